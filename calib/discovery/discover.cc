@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "calib/criticism/tests/judgement.h"
 #include "calib/criticism/tests/multiplicity.h"
@@ -30,7 +31,7 @@ Result<std::optional<fit::joint::JointFit>> fit_with(const PoseTable& table, fit
                                                      const std::vector<std::string>& specs, int sensors) {
   for (const std::string& spec : specs) {
     auto effect = effects::library::make_effect(spec, sensors);
-    if (!effect) return tl::unexpected(effect.error());
+    if (!effect) return std::nullopt;
     options.effects.push_back(*std::move(effect));
   }
   const auto joint = fit::joint::profiled_options(table, options);
@@ -104,6 +105,83 @@ std::vector<tests::ScoredFamily> scored_library(const NoiseInForce& in_force,
   return out;
 }
 
+/// The leading formulas of some laws as effects; none where one of them is no effect.
+std::vector<std::string> specs_of(std::span<const ChosenLaw> laws) {
+  std::vector<std::string> out;
+  for (const ChosenLaw& law : laws) {
+    const std::vector<std::string>& of_law = law.law.formulas.front().specs;
+    if (of_law.empty()) return {};
+    out.insert(out.end(), of_law.begin(), of_law.end());
+  }
+  return out;
+}
+
+/// What laws leave in a fit with them.
+struct LeftInFit {
+  double log10_p{0};  ///< of the search
+  LeftOn on;
+  double random{0};  ///< 2 ln of the odds of an offset that walks or jumps
+};
+
+/// Empty where no such fit can be made.
+Result<std::optional<LeftInFit>> left_in_fit(const PoseTable& table, const DiscoverOptions& options,
+                                             const NoiseInForce& in_force, const Workbench& bench,
+                                             double questions, std::span<const ChosenLaw> laws) {
+  const std::vector<std::string> specs = specs_of(laws);
+  if (specs.empty()) return std::nullopt;
+  const auto with = fit_with(table, options.fit, specs, in_force.fit.problem.sensors());
+  if (!with) return tl::unexpected(with.error());
+  if (!*with || (*with)->problem.poses.size() != in_force.fit.problem.poses.size()) return std::nullopt;
+  const NoiseInForce beside = noise_beside_law(**with, in_force);
+  const ChannelSums sums(beside.fit, beside.residual);
+  const Workbench there{.grammar = bench.grammar,
+                        .inputs = bench.inputs,
+                        .values = bench.values,
+                        .problem = beside.fit.problem,
+                        .residual = beside.residual,
+                        .noise = beside.noise,
+                        .library = {},
+                        .looks = bench.looks};
+  const auto left = law_round(there, sums, false);
+  if (!left) return tl::unexpected(left.error());
+  return LeftInFit{.log10_p = tests::best_of(left->log10_p_best, questions),
+                   .on = left_on(sums),
+                   .random = std::max(left->walk, left->jumps)};
+}
+
+/// What the laws leave says something against them.
+bool something_left(const LawFindingReason& reason) {
+  using Rule = LawFindingReason::Rule;
+  return reason.rule == Rule::random_beside || reason.rule == Rule::law_left ||
+         reason.rule == Rule::scatter_left;
+}
+
+/// The search stands on one linearisation about the fit without the laws, and a large law moves that fit: in
+/// a fit with the stronger ones nothing may be left of a weaker law, or of what speaks against them all.
+Result<void> judge_in_fit(const PoseTable& table, const DiscoverOptions& options,
+                          const NoiseInForce& in_force, const Workbench& bench, std::vector<ChosenLaw>& laws,
+                          DiscoveryReport& out) {
+  if (laws.size() < 2 && !something_left(out.reason)) return {};
+  for (std::size_t m = 1; m <= laws.size(); ++m) {
+    if (m == laws.size() && !something_left(out.reason)) return {};
+    const auto left = left_in_fit(table, options, in_force, bench, out.questions, std::span(laws).first(m));
+    if (!left) return tl::unexpected(left.error());
+    if (!*left) return {};
+    if (m < laws.size() && stands_out((*left)->log10_p, options.looks)) continue;
+    laws.resize(m);
+    out.log10_p_left = (*left)->log10_p;
+    out.left_sigmas = (*left)->on.sigmas, out.left_on = sensor::channel_name((*left)->on.channel);
+    FoundLaw& first = laws.front().law;
+    if (first.random_beside) {
+      first.over_nothing_beside = (*left)->random;
+      first.random_beside = first.over_nothing_beside > 0;
+    }
+  }
+  const JudgedLaws judged = verdict_of(in_force, laws, out, options.looks);
+  out.verdict = judged.verdict, out.reason = judged.reason;
+  return {};
+}
+
 /// The shape of the first law, and what no part of the choice has seen.
 Result<void> check(const PoseTable& table, const DiscoverOptions& options, const fit::joint::JointFit& fit,
                    const NoiseInForce& in_force, const Workbench& bench, ChannelSums sums,
@@ -120,12 +198,8 @@ Result<void> check(const PoseTable& table, const DiscoverOptions& options, const
   const auto spread = extrapolation_spread(laws.front().set, table, in_force.fit);
   if (!spread) return tl::unexpected(spread.error());
   first.extrapolation_spread = *spread;
-  std::vector<std::string> specs;
-  for (const ChosenLaw& law : laws) {
-    const std::vector<std::string>& of_law = law.law.formulas.front().specs;
-    if (of_law.empty()) return {};
-    specs.insert(specs.end(), of_law.begin(), of_law.end());
-  }
+  const std::vector<std::string> specs = specs_of(laws);
+  if (specs.empty()) return {};
   const auto with = fit_with(table, options.fit, specs, fit.problem.sensors());
   if (!with) return tl::unexpected(with.error());
   if (!*with) return {};
@@ -181,6 +255,9 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   out.may_be_drift = may_be_drift(*in_force, found->laws.front());
   const JudgedLaws judged = verdict_of(*in_force, found->laws, out, options.looks);
   out.verdict = judged.verdict, out.reason = judged.reason;
+  if (found->laws.front().law.stands_out)
+    if (const auto ok = judge_in_fit(table, options, *in_force, bench, found->laws, out); !ok)
+      return tl::unexpected(ok.error());
   if (found->laws.front().law.stands_out && options.checks)
     if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
       return tl::unexpected(ok.error());

@@ -92,8 +92,10 @@ struct DiscoveryReport {
   LawFinding verdict{LawFinding::pass};
   LawFindingReason reason{};
   std::vector<FoundLaw> laws{};  ///< strongest first; the first is found even where it is not believed
-  double log10_p_left{0};        ///< of the search in what is left after the laws
-  std::string left_on{};         ///< an axis on which more scatters than noise, after the laws
+  /// Of the search in what is left after the laws; where that or `left_sigmas` would speak against them, both
+  /// are of a fit with them.
+  double log10_p_left{0};
+  std::string left_on{};  ///< an axis on which more scatters than noise, after the laws
   double left_sigmas{0};
   std::size_t poses{0}, searched{0};  ///< of the run, and those that the search took
   std::size_t formulas{0}, hypotheses{0};

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <regex>
+#include <span>
 
 #include "calib/discovery/channel_sums.h"
 #include "calib/discovery/grammar.h"
+#include "calib/effects/formula/formula_effect.h"
 #include "calib/effects/laws/site_gradient.h"
 #include "calib/effects/where.h"
 
@@ -77,14 +80,36 @@ std::string shown_covariate(const std::string& name, const Place& place) {
   return before ? at + " before" : at;
 }
 
-std::vector<std::string> specs_of(const Columns& columns, const Place& place, const std::string& name) {
-  std::string expression;
-  if (columns.size() == 1) {
-    expression = columns.front();
-  } else {
-    for (std::size_t j = 0; j < columns.size(); ++j)
-      expression += fmt::format("{}k{}*{}", j == 0 ? "" : " + ", j + 1, columns[j]);
+namespace {
+
+/// "k1*a + k2*b"
+std::string expression_of(std::span<const std::string> columns) {
+  if (columns.size() == 1) return columns.front();
+  std::string out;
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    out += fmt::format("{}k{}*{}", j == 0 ? "" : " + ", j + 1, columns[j]);
+  return out;
+}
+
+/// One effect, or several where it has more coefficients than a gradient takes.
+std::vector<std::string> gradient_specs(const Columns& columns, const std::string& name) {
+  using effects::formula::kGradientCoefficients;
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from < columns.size(); from += kGradientCoefficients) {
+    const auto some =
+        std::span(columns).subspan(from, std::min(kGradientCoefficients, columns.size() - from));
+    out.push_back(
+        fmt::format("{}{},level=gradient,unit=nT/m,expr={}", name,
+                    columns.size() > kGradientCoefficients ? fmt::format("-{}", out.size() + 1) : "",
+                    expression_of(some)));
   }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> specs_of(const Columns& columns, const Place& place, const std::string& name) {
+  const std::string expression = expression_of(columns);
   const auto spec = [&](const std::string& of, const std::string& where) {
     return fmt::format("{}@{},level=axis,unit=nT,expr={}", of, where, expression);
   };
@@ -99,7 +124,7 @@ std::vector<std::string> specs_of(const Columns& columns, const Place& place, co
       return out;
     }
     case Place::Kind::gradient:
-      return {fmt::format("{},level=gradient,unit=nT/m,expr={}", name, expression)};
+      return gradient_specs(columns, name);
   }
   return {};
 }

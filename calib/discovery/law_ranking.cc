@@ -33,6 +33,7 @@ struct LogSum {
 /// parabola about its largest value, which falls by about S over that interval.
 int steps_for(double S) {
   constexpr double kFall = 0.01;
+  if (!(S > kFall)) return 14;
   return std::max(14,
                   static_cast<int>(std::ceil(std::log(std::sqrt(S / kFall)) / std::log(std::numbers::phi))));
 }

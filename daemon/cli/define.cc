@@ -86,7 +86,10 @@ Result<calib::effects::EffectSpec> spec_of(const DefineArguments& args) {
   if (const auto ok = usable_name(args.name); !ok) return tl::unexpected(ok.error());
   calib::effects::EffectSpec spec{.name = args.name, .where = {}, .parameters = {}};
   const bool of_site = args.level == "site" || args.level == "gradient";
-  if (!args.scale.empty() && !of_site) {
+  if (!args.scale.empty() && of_site)
+    return fail(ErrorCode::usage, fmt::format("--scale does not apply at level {}", args.level),
+                "leave it out: the formula has coefficients of its own there, for the whole array");
+  if (!args.scale.empty()) {
     const auto where = calib::effects::Where::parse(args.scale);
     if (!where) return tl::unexpected(where.error());
     spec.where = *where;

@@ -30,8 +30,8 @@ constexpr const char* kExplainHelp =
     "Columns: k, number of coefficients; d and p, how far beyond chance; share, the part of the excess of\n"
     "chi-square that the effect would take away (1: all of it; -: the noise is not known from these poses,\n"
     "and nothing was found).\n\n"
-    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula beside what was\n"
-    "named; --no-law leaves that out.\n\n"
+    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula, first without\n"
+    "what was named, for that may stand in for it, then beside it; --no-law leaves that out.\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
@@ -91,6 +91,8 @@ int run_explain(const Session& session, const ExplainArguments& args) {
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
+    if (law && !law->instead_of.empty())
+      text = "A formula accounts for everything, instead of what is named here: see the end.\n\n" + text;
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
     text += law_text(law, *source, args.run);
     print_text(session, text);

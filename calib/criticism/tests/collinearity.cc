@@ -104,9 +104,12 @@ Result<CandidateEffect> formula_candidate(const effects::EffectSpec& given, int 
 Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::FitOptions& options,
                                            const effects::EffectSpec& formula) {
   const int sensors = table.poses.empty() ? kSensors : static_cast<int>(table.poses.front().y_nT.size());
-  const auto candidate_effect = formula_candidate(formula, sensors);
+  auto candidate_effect = formula_candidate(formula, sensors);
   if (!candidate_effect) return tl::unexpected(candidate_effect.error());
-  for (const effects::EffectPtr& variant : candidate_effect->variants) {
+  for (effects::EffectPtr& variant : candidate_effect->variants) {
+    auto looking_back = variant->bound({.table = &table, .offset_nT = {}});
+    if (!looking_back) return tl::unexpected(looking_back.error());
+    if (*looking_back) variant = *std::move(looking_back);
     if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());
     if (const auto ok = effects::check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
   }

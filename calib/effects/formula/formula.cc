@@ -107,7 +107,7 @@ Result<void> fits_gradient(const EffectSpec& spec, const Expression& expression,
     if (name.source == Source::coefficient && name.index >= kGradientCoefficients)
       return tl::unexpected(expression_error(
           expression.text(), column_of(expression.text(), name.name),
-          fmt::format("{}: a gradient takes at most {} coefficients", spec.name, kGradientCoefficients),
+          fmt::format("{}: a gradient takes k, or k1 and k2, and no {}", spec.name, name.name),
           "make it of several formulas"));
   }
   return {};
@@ -262,7 +262,7 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
         fmt::format("columns: {}; coefficients k or k1 to k3; t_h, pose, {}", fmt::join(there, ", "),
                     formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
                     : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
-                    : of_gradient(spec)                  ? "history of a column (prev_X, lag600_X)"
+                    : of_gradient(spec)                  ? "lag600_X of a column"
                                                          : "px, py, pz")));
   }
   return {};

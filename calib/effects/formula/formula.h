@@ -25,7 +25,7 @@
 ///     pose                 its number; prev_X, lag600_X, rate_X: what was before (history_name.h)
 ///     u, ux, uy, uz        axis: the axis' own field term and those of its sensor, nT
 ///     b, bx, by, bz        platform: the same of the field at the sensor, nT; gx, gy, gz unit gravity
-///     px, py, pz           site: place, m, from the centre of the array; a gradient is one at every place
+///     px, py, pz           site: place, m, from the centre of the array; a gradient is the same everywhere
 /// and any other column of the pose table. Coefficients must come in linearly: that is tried and refused
 /// otherwise. Derivatives by the field are central differences; see derivative_check.h.
 namespace mgtd::calib::effects::formula {

@@ -39,6 +39,10 @@ TEST(FormulaText, ALawOfASensorIsOneEffectAnAxis) {
               ElementsAre("law1@each-axis,level=axis,unit=nT,expr=k1*a_A + k2*b_V"));
   EXPECT_THAT(specs_of({"t_h"}, {Place::Kind::gradient, 0}, "law1"),
               ElementsAre("law1,level=gradient,unit=nT/m,expr=t_h"));
+  EXPECT_THAT(specs_of({"a_A", "b_V", "c_A"}, {Place::Kind::gradient, 0}, "law1"),
+              ElementsAre("law1-1,level=gradient,unit=nT/m,expr=k1*a_A + k2*b_V",
+                          "law1-2,level=gradient,unit=nT/m,expr=c_A"))
+      << "a gradient takes two coefficients";
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "calib/calibration/calibration.h"
 #include "calib/criticism/tests/collinearity.h"
 #include "calib/effects/derivative_check.h"
@@ -104,6 +106,25 @@ TEST(Formula, OfAGradientIsTheTermOfTheLibrary) {
   }
 }
 
+/// Gxx.k1, Gxx.k2, Gyy.k1 ...: the gradient and its drift, each with coefficients of its own.
+TEST(Formula, CoefficientsOfAGradientStandByComponent) {
+  Pose pose;
+  pose.azimuth_rad = pose.pitch_rad = pose.roll_rad = 0;
+  const Conditions at{.pose = pose, .t_h = 0.7};
+  const std::array<double, 3> x{0.11, -0.2, 0.05};
+  const std::array<double, 5> G{3, -5, 7, 2, -4}, drift{-1, 6, 0.5, -8, 9};
+  std::vector<double> both;
+  for (std::size_t m = 0; m < G.size(); ++m) both.insert(both.end(), {G[m], drift[m]});
+  const auto term = [&](const char* spec, std::span<const double> c) {
+    std::array<double, 3> out{};
+    formula(spec)->term(at, 1, std::span<const double>(x), c, std::span<double>(out));
+    return out;
+  };
+  const auto of_G = term("site.gradient", G), of_drift = term("site.gradient-drift", drift);
+  const auto of_both = term("a,level=gradient,expr=k1 + k2*t_h", both);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(of_both[i], of_G[i] + of_drift[i], 1e-12);
+}
+
 /// The same law by the library and by a formula, one through temperature, one through the field itself.
 TEST(Formula, WhatTheLibraryKnowsTooGivesTheSameFit) {
   const PoseTable table = warm_and_bent(1);
@@ -154,7 +175,7 @@ TEST(Formula, MistakesAreShownAtTheirColumn) {
   EXPECT_THAT(refusal("a,level=gradient,expr=t_h*px").message,
               HasSubstr("a gradient is the same at every place"));
   EXPECT_THAT(refusal("a,level=gradient,expr=k1*t_h + k3*t_h^2").message,
-              HasSubstr("at most 2 coefficients"));
+              HasSubstr("a gradient takes k, or k1 and k2, and no k3"));
 }
 
 TEST(Formula, AColumnThatNoPoseHasIsNamedWithThoseThereAre) {
@@ -182,6 +203,27 @@ TEST(Formula, AnAngleColumnInAFunctionOfRadiansIsAskedAbout) {
                            "sin(azimuth_deg/57.29578)", "sin(T_degC)", "asin(azimuth_deg/360)",
                            "azimuth_deg*sin(t_h)", "sin(2*pi*t_h)*cosd(roll_deg)"})
     EXPECT_TRUE(check_angles(fine)) << fine;
+}
+
+/// As `mgt define` does: what a formula looks back at is of the run.
+TEST(Formula, ThatLooksBackIsExaminedOnItsRun) {
+  const auto x = criticism::tests::examine_formula(warm_and_bent(6), {},
+                                                   *EffectSpec::parse("a@s3.z,expr=lag600_T_degC"));
+  ASSERT_TRUE(x) << x.error().text();
+  EXPECT_LT(x->log10_p, -10) << "the offset follows the temperature, and so nearly its low-pass";
+  EXPECT_FALSE(x->wholly_absorbed());
+}
+
+/// A gradient may follow what a column was before; what a sensor read before is none of the site's.
+TEST(Formula, OfAGradientLooksBackAtColumns) {
+  PoseTable table = warm_and_bent(6);
+  for (Pose& pose : table.poses) pose.covariates["lift_m"] = pose.number % 5;
+  const auto bound =
+      formula("a,level=gradient,expr=lag600_lift_m")->bound({.table = &table, .offset_nT = {}});
+  ASSERT_TRUE(bound) << bound.error().text();
+  ASSERT_TRUE(*bound);
+  EXPECT_EQ((*bound)->missing(table.poses[3]), "");
+  EXPECT_EQ(formula("a,level=gradient,expr=prev_ux")->missing(table.poses[3]), "prev_ux") << "a column";
 }
 
 TEST(Formula, ARowWithoutItsColumnIsNotFed) {
