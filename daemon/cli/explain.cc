@@ -92,7 +92,8 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
     if (law && !law->instead_of.empty())
-      text = "A formula accounts for everything, instead of what is named here: see the end.\n\n" + text;
+      text.insert(text.find('\n') + 1,
+                  "A formula accounts for everything, instead of what is named here: see the end.\n");
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
     text += law_text(law, *source, args.run);
     print_text(session, text);
