@@ -76,7 +76,7 @@ int run_improve(const Session& session, const ImproveArguments& args) {
                        ? remaining_law(source->table, *options, whole->effects, improved->finding)
                        : std::nullopt;
   if (law && !law->instead_of.empty() && !args.output.empty())
-    fmt::print(stderr, "{} holds {}, which a formula would replace: see the end\n", args.output,
+    fmt::print(stderr, "{} holds {}: a formula accounts for everything without it\n", args.output,
                fmt::join(law->instead_of, ", "));
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);
