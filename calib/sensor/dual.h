@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 
 /// Forward-mode dual number: a value and its N partial derivatives, carried exactly through every operation.
 ///
@@ -18,8 +19,12 @@ struct Dual {
   double v;
   Derivatives d;
 
-  /// Like a double, not initialised.
+  /// Like a double, not initialised; a build that checks makes it no number, so that it is seen.
+#ifdef NDEBUG
   Dual() {}
+#else
+  Dual() : v(std::numeric_limits<double>::quiet_NaN()) {}
+#endif
   /// Not explicit: constants mix with variables.
   Dual(double value) : v(value), d(Derivatives::Zero()) {}
   Dual(double value, const Derivatives& derivatives) : v(value), d(derivatives) {}

@@ -31,6 +31,13 @@ std::size_t count_coefficients(const std::vector<FormulaName>& names) {
   return out;
 }
 
+/// sum += factor x.
+void add_times(double factor, double x, double& sum) { sum += factor * x; }
+void add_times(double factor, const Jet& x, Jet& sum) {
+  sum.v += factor * x.v;
+  sum.d += factor * x.d;
+}
+
 laws::AxisCoefficients per_axis(std::size_t count, const std::string& unit, double typical) {
   laws::AxisCoefficients out{.suffix = {}, .unit = unit, .typical = typical};
   for (auto& suffix : out.suffix) {
@@ -198,12 +205,13 @@ void FormulaEffect::gradient_term(const Conditions& at, int sensor, std::span<co
   Values values{};
   set_conditions(at, sensor, values);
   if (!set_before(at, sensor, 0, values)) return;
-  std::array<S, laws::kGradientComponents.size()> g{};
+  std::array<S, laws::kGradientComponents.size()> g;
+  g.fill(S(0.0));  // a jet is not initialised
   for (std::size_t j = 0; j < per_axis_; ++j) {
     Own unit{};
     unit[j] = 1;
-    const S shape(value(values, unit));
-    for (std::size_t m = 0; m < g.size(); ++m) g[m] += shape * c[m * per_axis_ + j];
+    const double shape = value(values, unit);
+    for (std::size_t m = 0; m < g.size(); ++m) add_times(shape, c[m * per_axis_ + j], g[m]);
   }
   laws::gradient_times(std::span<const S>(g), x, out);
 }
