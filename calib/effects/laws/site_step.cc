@@ -2,6 +2,7 @@
 #include "calib/effects/laws/site_step.h"
 
 #include "calib/effects/laws/axis_offset.h"
+#include "calib/effects/laws/site_gradient.h"
 #include "calib/poses/run_time.h"
 
 namespace mgtd::calib::effects::laws {

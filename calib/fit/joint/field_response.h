@@ -4,6 +4,7 @@
 #include <array>
 
 #include "calib/sensor/sensor_model.h"
+#include "proto/per_sensor.h"
 
 namespace mgtd::calib::fit::joint {
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "calib/sensor/sensor_model.h"
+#include "proto/per_sensor.h"
 
 namespace mgtd::calib::fit::joint {
 
