@@ -10,16 +10,19 @@
 #include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::discovery {
-namespace {
-
 namespace tests = criticism::tests;
 
-}  // namespace
+double length_left(double left2, double about_mean2, double whole2, double share) {
+  const double least = std::max(share * share * about_mean2, kRounding * kRounding * whole2);
+  return left2 > least && left2 > 0 ? 1 / std::sqrt(std::max(left2, 1e-300)) : 0;
+}
 
 Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
                             const Eigen::VectorXd& whole2, double share) {
-  const auto least = (share * share * about_mean2.array()).max(kRounding * kRounding * whole2.array());
-  return (left2.array() > least && left2.array() > 0).select(left2.array().max(1e-300).rsqrt(), 0.0);
+  Eigen::VectorXd out(left2.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    out[i] = length_left(left2[i], about_mean2[i], whole2[i], share);
+  return out;
 }
 
 Eigen::MatrixXd combinations(const Eigen::MatrixXd& left, const Eigen::MatrixXd& before, double share) {
@@ -87,56 +90,75 @@ Eigen::MatrixXd apart(const Eigen::VectorXd& rows, Eigen::Index poses) {
 
 }  // namespace
 
-ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual& residual)
-    : poses_(residual.poses()),
-      rows_(residual.rows_per_pose()),
-      channels_(fit.problem.channels()),
-      correlated_(residual.whitener().rho() != 0 || residual.whitener().wanders()),
-      absorbed_share_(std::max(kAbsorbedShare, residual.absorbed())),
-      basis_(residual.basis()) {
-  const Eigen::MatrixXd rows = unit_rows(fit.problem, fit.state);
-  total_ = static_cast<int>(rows.cols());
-  const Eigen::Index n = poses_ * rows_;
-  const auto Q = basis_.topRows(n);
-  const auto r = residual.value().head(n);
-  const Eigen::MatrixXd together = correlated_ ? Eigen::MatrixXd() : residual.whitener().apply(rows);
-  for (int c = 0; c < total_; ++c) {
-    Column column;
-    Eigen::VectorXd score(poses_);
-    Eigen::MatrixXd taken(basis_.cols(), poses_);
-    if (correlated_) {
-      column.full = residual.whitener().apply(apart(rows.col(c), poses_)) / residual.unit();
-      score = column.full.transpose() * r;
-      taken.noalias() = Q.transpose() * column.full;
+Eigen::MatrixXd ChannelSums::Model::on_channel(int c, const Eigen::MatrixXd& X) const {
+  const Eigen::Index block = projection->whitener().pose_rows(), poses = rows.rows() / block;
+  Eigen::MatrixXd out(poses, X.cols());
+  for (Eigen::Index k = 0; k < poses; ++k) {
+    if (c < channels) {
+      out.row(k) = rows(k * block + c, c) * X.row(k * block + c);
     } else {
-      column.block = together.col(c) / residual.unit();
-      for (Eigen::Index k = 0; k < poses_; ++k) {
-        const auto own = column.block.segment(k * rows_, rows_);
-        score[k] = own.dot(r.segment(k * rows_, rows_));
-        taken.col(k).noalias() = Q.middleRows(k * rows_, rows_).transpose() * own;
-      }
+      out.row(k).noalias() =
+          rows.col(c).segment(k * block, block).transpose() * X.middleRows(k * block, block);
     }
-    columns_.push_back(std::move(column));
-    scores_.emplace_back(std::move(score));
-    taken_.push_back(std::move(taken));
   }
-  before_.resize(static_cast<std::size_t>(total_));
-  for (std::size_t c = 0; c < columns_.size(); ++c)
-    for (std::size_t d = c; d < columns_.size(); ++d)
-      before_[c].push_back(column_products(columns_[c], columns_[d]));
+  return out;
 }
 
-Eigen::MatrixXd ChannelSums::column_products(const Column& a, const Column& b) const {
-  if (correlated_) return a.full.transpose() * b.full;
-  Eigen::MatrixXd out(poses_, 1);
-  for (Eigen::Index k = 0; k < poses_; ++k)
-    out(k, 0) = a.block.segment(k * rows_, rows_).dot(b.block.segment(k * rows_, rows_));
+Scores ChannelSums::Model::by_channel(const Eigen::MatrixXd& X) const {
+  const Eigen::MatrixXd back = projection->whitener().apply_transposed(X) / unit;
+  Scores out;
+  for (int c = 0; c < rows.cols(); ++c) out.push_back(on_channel(c, back));
   return out;
+}
+
+void ChannelSums::Model::set_before() {
+  const tests::Whitener& whitener = projection->whitener();
+  const Eigen::Index poses = rows.rows() / whitener.pose_rows();
+  const auto total = static_cast<int>(rows.cols());
+  before.resize(static_cast<std::size_t>(total));
+  if (whitener.rho() == 0 && !whitener.wanders()) {
+    const Eigen::MatrixXd white = whitener.apply(rows) / unit;
+    for (int c = 0; c < total; ++c) {
+      for (int d = c; d < total; ++d) {
+        const Eigen::VectorXd products = white.col(c).cwiseProduct(white.col(d));
+        before[static_cast<std::size_t>(c)].emplace_back(
+            products.reshaped(whitener.rows_per_pose(), poses).colwise().sum().transpose());
+      }
+    }
+    return;
+  }
+  for (int d = 0; d < total; ++d) {
+    const Eigen::MatrixXd back =
+        whitener.apply_transposed(whitener.apply(apart(rows.col(d), poses))) / (unit * unit);
+    for (int c = 0; c <= d; ++c) before[static_cast<std::size_t>(c)].push_back(on_channel(c, back));
+  }
+}
+
+ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual& residual)
+    : poses_(residual.poses()),
+      channels_(fit.problem.channels()),
+      correlated_(residual.whitener().rho() != 0 || residual.whitener().wanders()),
+      absorbed_share_(std::max(kAbsorbedShare, residual.absorbed())) {
+  Model model{.projection = residual.projection(),
+              .unit = residual.unit(),
+              .rows = unit_rows(fit.problem, fit.state),
+              .channels = channels_,
+              .before = {}};
+  total_ = static_cast<int>(model.rows.cols());
+  model.set_before();
+  const Eigen::Index n = poses_ * residual.rows_per_pose(), p = residual.basis().cols();
+  Eigen::MatrixXd both(n, p + 1);
+  both << residual.basis().topRows(n), residual.value().head(n);
+  for (const Eigen::MatrixXd& on_channel : model.by_channel(both)) {
+    taken_.emplace_back(on_channel.leftCols(p).transpose());
+    scores_.emplace_back(on_channel.col(p));
+  }
+  model_ = std::make_shared<const Model>(std::move(model));
 }
 
 Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::MatrixXd& g) const {
   const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
-  const Eigen::MatrixXd& h = before_[low][high - low];
+  const Eigen::MatrixXd& h = model_->before[low][high - low];
   if (!correlated_) return h.col(0).asDiagonal() * g;
   if (c > d) return linear::transposed_product(h, g);
   Eigen::MatrixXd out(h.rows(), g.cols());
@@ -151,9 +173,35 @@ Eigen::MatrixXd ChannelSums::taken_up(int c, const Eigen::MatrixXd& g) const {
   return out;
 }
 
+Eigen::MatrixXd ChannelSums::taken_up_by_model(int c, const Eigen::MatrixXd& g) const {
+  const Eigen::MatrixXd& taken = taken_[static_cast<std::size_t>(c)];
+  Eigen::MatrixXd out(model_->projection->basis().cols(), g.cols());
+  linear::set_product(taken.topRows(out.rows()), g, out);
+  return out;
+}
+
+Eigen::MatrixXd ChannelSums::taken_up_by_laws(int c, const Eigen::MatrixXd& g) const {
+  return taken_[static_cast<std::size_t>(c)].bottomRows(static_cast<Eigen::Index>(taken_out_.size())) * g;
+}
+
+Eigen::MatrixXd ChannelSums::products(int c, int d) const {
+  const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
+  const Eigen::MatrixXd& h = model_->before[low][high - low];
+  Eigen::MatrixXd out =
+      linear::transposed_product(-taken_[static_cast<std::size_t>(c)], taken_[static_cast<std::size_t>(d)]);
+  if (!correlated_) {
+    out.diagonal() += h.col(0);
+  } else if (c > d) {
+    out += h.transpose();
+  } else {
+    out += h;
+  }
+  return out;
+}
+
 Eigen::MatrixXd ChannelSums::product(int c, int d, const Eigen::MatrixXd& g) const {
   Eigen::MatrixXd out = before_projection(c, d, g);
-  out.noalias() -= taken_[static_cast<std::size_t>(c)].transpose() * taken_up(d, g);
+  out -= linear::transposed_product(taken_[static_cast<std::size_t>(c)], taken_up(d, g));
   return out;
 }
 
@@ -206,21 +254,10 @@ void ChannelSums::take_out(const LawOnChannels& law) {
 
 Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
   std::normal_distribution<double> normal;
-  const Eigen::Index n = poses_ * rows_;
-  const Eigen::MatrixXd noise =
-      Eigen::MatrixXd::NullaryExpr(basis_.rows(), count, [&] { return normal(random); });
-  const Eigen::MatrixXd taken = basis_.transpose() * noise;
-  Scores out(static_cast<std::size_t>(total_), Eigen::MatrixXd(poses_, count));
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    if (correlated_) {
-      out[c].noalias() = columns_[c].full.transpose() * noise.topRows(n);
-    } else {
-      for (Eigen::Index k = 0; k < poses_; ++k)
-        out[c].row(k).noalias() =
-            columns_[c].block.segment(k * rows_, rows_).transpose() * noise.middleRows(k * rows_, rows_);
-    }
-    out[c].noalias() -= taken_[c].topRows(basis_.cols()).transpose() * taken;
-  }
+  const Eigen::MatrixXd& basis = model_->projection->basis();
+  Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(basis.rows(), count, [&] { return normal(random); });
+  linear::subtract_product(basis, linear::transposed_product(basis, noise), noise);
+  Scores out = model_->by_channel(noise.topRows(poses_ * model_->projection->whitener().rows_per_pose()));
   for (const TakenOut& law : taken_out_) {
     Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(count);
     for (std::size_t c = 0; c < law.law.size(); ++c)
@@ -232,10 +269,10 @@ Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
 
 ChannelSums::Moments ChannelSums::moments(int channel) const {
   const auto c = static_cast<std::size_t>(channel);
-  const Eigen::MatrixXd& h = before_[c].front();
+  const Eigen::MatrixXd& h = model_->before[c].front();
   const Eigen::MatrixXd& U = taken_[c];
   if (correlated_) {
-    const Eigen::MatrixXd G = h - U.transpose() * U;
+    const Eigen::MatrixXd G = products(channel, channel);
     return {.trace = G.trace(), .squares = G.squaredNorm()};
   }
   // |diag(h) - U'U|^2 without the matrix of poses by poses.

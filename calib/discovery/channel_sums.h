@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <cstdint>
-#include <optional>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -17,9 +16,9 @@
 ///     s_c = Z_c' r                score of g       g' s_c
 ///     G_cd = Z_c' Z_d             product of two   g' G_cd h
 ///
-/// Z_c itself is never made: where poses are uncorrelated G_cd = diag(h_cd) - U_c' U_d, h_cd the products of
-/// the whitened columns pose by pose and U_c what the model's parameters can take of them. Where the noise is
-/// correlated from pose to pose h_cd is a full matrix.
+/// Z_c itself is never made: with W the whitener and E_c the rows of one unit at each pose, G_cd = h_cd -
+/// U_c' U_d, where h_cd = E_c' W'W E_d and U_c = B' W E_c is what the model's parameters can take. Where
+/// poses are uncorrelated h_cd is diagonal, else a full matrix.
 ///
 /// Channels 0 .. 3N-1 are those of the readings; behind them stand five components of a gradient of the
 /// site's field (kGradient), where the poses have table angles.
@@ -34,6 +33,7 @@ inline constexpr double kRounding = 1e-6;
 
 /// One over the length that columns have left after projection; zero for absorbed ones, that have less than
 /// `share` left. Squares of lengths: what is left, what there was without the mean, and all of it.
+[[nodiscard]] double length_left(double left2, double about_mean2, double whole2, double share);
 [[nodiscard]] Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
                                           const Eigen::VectorXd& whole2, double share);
 
@@ -77,8 +77,12 @@ class ChannelSums {
   }
   /// h_cd G: columns of `g` as they are before projection, in the products with channel c.
   [[nodiscard]] Eigen::MatrixXd before_projection(int c, int d, const Eigen::MatrixXd& g) const;
-  /// U_c G.
+  /// U_c G: what the model's own parameters can take, and below it what laws take that were taken out.
   [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const;
+  [[nodiscard]] Eigen::MatrixXd taken_up_by_model(int c, const Eigen::MatrixXd& g) const;
+  [[nodiscard]] Eigen::MatrixXd taken_up_by_laws(int c, const Eigen::MatrixXd& g) const;
+  /// G_cd: poses x poses.
+  [[nodiscard]] Eigen::MatrixXd products(int c, int d) const;
   /// G_cd G.
   [[nodiscard]] Eigen::MatrixXd product(int c, int d, const Eigen::MatrixXd& g) const;
 
@@ -104,21 +108,27 @@ class ChannelSums {
   [[nodiscard]] Moments moments(int channel) const;
 
  private:
-  /// Whitened columns of one unit at each pose of a channel.
-  struct Column {
-    Eigen::VectorXd block;  ///< side by side: each pose has rows of its own
-    Eigen::MatrixXd full;   ///< where poses are correlated: rows x poses
-  };
-  [[nodiscard]] Eigen::MatrixXd column_products(const Column& a, const Column& b) const;
+  /// What stays as it is when a law is taken out; copies share it.
+  struct Model {
+    std::shared_ptr<const criticism::tests::Projection> projection;
+    double unit;           ///< Residual::unit
+    Eigen::MatrixXd rows;  ///< E_c: of one unit on each channel, at every pose
+    int channels;
+    std::vector<std::vector<Eigen::MatrixXd>> before;  ///< h_cd, d >= c: poses x 1 or poses x poses
 
-  Eigen::Index poses_, rows_;
+    /// E_c' X, X rows as in LinearRows.
+    [[nodiscard]] Eigen::MatrixXd on_channel(int c, const Eigen::MatrixXd& X) const;
+    /// E_c' W' X of every channel, X as the whitener gives rows.
+    [[nodiscard]] Scores by_channel(const Eigen::MatrixXd& X) const;
+    void set_before();
+  };
+
+  Eigen::Index poses_;
   int channels_, total_;
   bool correlated_;
   double absorbed_share_;
-  std::vector<Column> columns_;
-  std::vector<std::vector<Eigen::MatrixXd>> before_;  ///< h_cd, d >= c: poses x 1 or poses x poses
-  std::vector<Eigen::MatrixXd> taken_;                ///< U_c
-  Eigen::MatrixXd basis_;                             ///< of the model's parameters, as in the residual
+  std::shared_ptr<const Model> model_;
+  std::vector<Eigen::MatrixXd> taken_;  ///< U_c
   Scores scores_;
   struct TakenOut {
     LawOnChannels law;  ///< of unit length

@@ -25,18 +25,25 @@ namespace {
 
 namespace tests = criticism::tests;
 
-/// A fit with the first formula of some laws; empty where one of them is no effect, or the fit does not
-/// settle.
+/// A fit with the first formula of some laws, which starts from the one without them; empty where one of them
+/// is no effect, or the fit does not settle.
 Result<std::optional<fit::joint::JointFit>> fit_with(const PoseTable& table, fit::FitOptions options,
-                                                     const std::vector<std::string>& specs, int sensors) {
+                                                     const fit::joint::JointFit& without,
+                                                     const std::vector<std::string>& specs) {
   for (const std::string& spec : specs) {
-    auto effect = effects::library::make_effect(spec, sensors);
+    auto effect = effects::library::make_effect(spec, without.problem.sensors());
     if (!effect) return std::nullopt;
     options.effects.push_back(*std::move(effect));
   }
-  const auto joint = fit::joint::profiled_options(table, options);
+  auto joint = fit::joint::profiled_options(table, options);
   if (!joint) return tl::unexpected(joint.error());
-  auto fit = fit::joint::fit_joint_at_size(table, *joint);
+  joint->noise_inflation = without.noise_inflation;
+  Eigen::Index coefficients = 0;
+  for (const effects::EffectPtr& effect : joint->effects)
+    coefficients += static_cast<Eigen::Index>(effect->coefficients().size());
+  fit::joint::JointState start = without.state;
+  start.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(coefficients));
+  auto fit = fit::joint::fit_joint_at_size(table, *joint, &start);
   if (!fit) return std::nullopt;
   return *std::move(fit);
 }
@@ -52,19 +59,19 @@ Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& opt
     const bool doubtful =
         out.noise.scale2 != 1 || out.residual.whitener().rho() != 0 || out.wanders || fit.noise_inflation > 1;
     if (!doubtful) break;
+    const ChannelSums sums(out.fit, out.residual);
+    const FormulaProducts products(values, sums);
     const Workbench bench{.grammar = formulas,
                           .inputs = inputs,
-                          .values = values,
+                          .products = products,
                           .problem = out.fit.problem,
                           .residual = out.residual,
                           .noise = out.noise};
-    const ChannelSums sums(out.fit, out.residual);
     const auto round = law_round(bench, sums, false);
     if (!round) return tl::unexpected(round.error());
     const auto leading = chosen_law(bench, sums, *round, 1, "law1");
     if (!leading) return tl::unexpected(leading.error());
-    const auto with =
-        fit_with(table, options.fit, leading->law.formulas.front().specs, inputs.channels() / 3);
+    const auto with = fit_with(table, options.fit, fit, leading->law.formulas.front().specs);
     if (!with) return tl::unexpected(with.error());
     if (!*with || leading->law.formulas.front().specs.empty()) break;
     const auto variance_nT2 = variance_of_angles(leading->head, fit.table_sd_rad, inputs);
@@ -125,18 +132,20 @@ struct LeftInFit {
 
 /// Empty where no such fit can be made.
 Result<std::optional<LeftInFit>> left_in_fit(const PoseTable& table, const DiscoverOptions& options,
-                                             const NoiseInForce& in_force, const Workbench& bench,
-                                             double questions, std::span<const ChosenLaw> laws) {
+                                             const fit::joint::JointFit& fit, const NoiseInForce& in_force,
+                                             const Workbench& bench, double questions,
+                                             std::span<const ChosenLaw> laws) {
   const std::vector<std::string> specs = specs_of(laws);
   if (specs.empty()) return std::nullopt;
-  const auto with = fit_with(table, options.fit, specs, in_force.fit.problem.sensors());
+  const auto with = fit_with(table, options.fit, fit, specs);
   if (!with) return tl::unexpected(with.error());
   if (!*with || (*with)->problem.poses.size() != in_force.fit.problem.poses.size()) return std::nullopt;
   const NoiseInForce beside = noise_beside_law(**with, in_force);
   const ChannelSums sums(beside.fit, beside.residual);
+  const FormulaProducts products(bench.products.values(), sums);
   const Workbench there{.grammar = bench.grammar,
                         .inputs = bench.inputs,
-                        .values = bench.values,
+                        .products = products,
                         .problem = beside.fit.problem,
                         .residual = beside.residual,
                         .noise = beside.noise,
@@ -159,12 +168,13 @@ bool something_left(const LawFindingReason& reason) {
 /// The search stands on one linearisation about the fit without the laws, and a large law moves that fit: in
 /// a fit with the stronger ones nothing may be left of a weaker law, or of what speaks against them all.
 Result<void> judge_in_fit(const PoseTable& table, const DiscoverOptions& options,
-                          const NoiseInForce& in_force, const Workbench& bench, std::vector<ChosenLaw>& laws,
-                          DiscoveryReport& out) {
+                          const fit::joint::JointFit& fit, const NoiseInForce& in_force,
+                          const Workbench& bench, std::vector<ChosenLaw>& laws, DiscoveryReport& out) {
   if (laws.size() < 2 && !something_left(out.reason)) return {};
   for (std::size_t m = 1; m <= laws.size(); ++m) {
     if (m == laws.size() && !something_left(out.reason)) return {};
-    const auto left = left_in_fit(table, options, in_force, bench, out.questions, std::span(laws).first(m));
+    const auto left =
+        left_in_fit(table, options, fit, in_force, bench, out.questions, std::span(laws).first(m));
     if (!left) return tl::unexpected(left.error());
     if (!*left) return {};
     if (m < laws.size() && stands_out((*left)->log10_p, options.looks)) continue;
@@ -200,7 +210,7 @@ Result<void> check(const PoseTable& table, const DiscoverOptions& options, const
   first.extrapolation_spread = *spread;
   const std::vector<std::string> specs = specs_of(laws);
   if (specs.empty()) return {};
-  const auto with = fit_with(table, options.fit, specs, fit.problem.sensors());
+  const auto with = fit_with(table, options.fit, fit, specs);
   if (!with) return tl::unexpected(with.error());
   if (!*with) return {};
   out.after = {.residual_nT = fit::joint::pose_residuals((*with)->problem, (*with)->state).residual_nT(),
@@ -227,15 +237,16 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   const auto channels = static_cast<std::size_t>(fit->problem.channels());
   if (in_force->residual.whitener().rho() != 0 && fit->problem.poses.size() * channels > kMostCorrelated)
     return discover_in(run, options, kMostCorrelated / channels);
+  const ChannelSums bare(in_force->fit, in_force->residual);
+  const FormulaProducts products(*values, bare);
   const Workbench bench{.grammar = formulas,
                         .inputs = *inputs,
-                        .values = *values,
+                        .products = products,
                         .problem = in_force->fit.problem,
                         .residual = in_force->residual,
                         .noise = in_force->noise,
                         .library = scored_library(*in_force, candidates),
                         .looks = options.looks};
-  const ChannelSums bare(in_force->fit, in_force->residual);
   DiscoveryReport out;
   out.poses = static_cast<std::size_t>(std::count_if(run.poses.begin(), run.poses.end(), fitted));
   out.searched = fit->problem.poses.size();
@@ -245,7 +256,7 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   out.noise_nT = fit->noise_nT();
   out.residual_nT = fit::joint::pose_residuals(fit->problem, fit->state).residual_nT();
   out.questions = tests::questions_asked(
-      best_of_noise(LawSearch(*values, bare), bare, in_force->noise, options.draws, options.fit.seed));
+      best_of_noise(LawSearch(products, bare), bare, in_force->noise, options.draws, options.fit.seed));
   auto found = law_sequence(bench, bare, gradient_rows(bench.problem, in_force->fit.state), out.questions);
   if (!found) return tl::unexpected(found.error());
   out.hypotheses = found->hypotheses;
@@ -256,7 +267,7 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   const JudgedLaws judged = verdict_of(*in_force, found->laws, out, options.looks);
   out.verdict = judged.verdict, out.reason = judged.reason;
   if (found->laws.front().law.stands_out)
-    if (const auto ok = judge_in_fit(table, options, *in_force, bench, found->laws, out); !ok)
+    if (const auto ok = judge_in_fit(table, options, *fit, *in_force, bench, found->laws, out); !ok)
       return tl::unexpected(ok.error());
   if (found->laws.front().law.stands_out && options.checks)
     if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)

@@ -59,21 +59,26 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
   Eigen::MatrixXd A(n, n), B(n, n);
   Eigen::VectorXd v(n), length2(n), whole(n);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
+  std::vector<Eigen::MatrixXd> taken_up;
   for (std::size_t a = 0; a < on.size(); ++a) {
     const auto at = static_cast<Eigen::Index>(a) * count;
-    const Eigen::MatrixXd before = sums.before_projection(on[a], on[a], (*values)[a]);
-    const double of_one = one.dot(sums.before_projection(on[a], on[a], one).col(0));
-    whole.segment(at, count) = (*values)[a].cwiseProduct(before).colwise().sum().transpose();
-    length2.segment(at, count) =
-        whole.segment(at, count) - (one.transpose() * before).transpose().cwiseAbs2() / of_one;
     v.segment(at, count) = (*values)[a].transpose() * sums.score(on[a]);
-    for (std::size_t b = 0; b < on.size(); ++b) {
+    taken_up.push_back(sums.taken_up(on[a], (*values)[a]));
+    for (std::size_t b = 0; b <= a; ++b) {
       const auto beside = static_cast<Eigen::Index>(b) * count;
-      A.block(at, beside, count, count) = (*values)[a].transpose() * sums.product(on[a], on[b], (*values)[b]);
-      B.block(at, beside, count, count) =
-          (*values)[a].transpose() * sums.before_projection(on[a], on[b], (*values)[b]);
+      const Eigen::MatrixXd before = sums.before_projection(on[b], on[a], (*values)[a]);
+      B.block(beside, at, count, count) = (*values)[b].transpose() * before;
+      A.block(beside, at, count, count) =
+          B.block(beside, at, count, count) - taken_up[b].transpose() * taken_up[a];
+      if (b < a) continue;
+      const double of_one = one.dot(sums.before_projection(on[a], on[a], one).col(0));
+      whole.segment(at, count) = B.diagonal().segment(at, count);
+      length2.segment(at, count) =
+          whole.segment(at, count) - (one.transpose() * before).transpose().cwiseAbs2() / of_one;
     }
   }
+  A.triangularView<Eigen::StrictlyLower>() = A.transpose();
+  B.triangularView<Eigen::StrictlyLower>() = B.transpose();
   const Eigen::VectorXd scale = length_left(A.diagonal(), length2, whole, sums.absorbed_share());
   const Eigen::MatrixXd V =
       scale.asDiagonal() * combinations(scale.asDiagonal() * A * scale.asDiagonal(),

@@ -97,9 +97,9 @@ Result<std::optional<double>> held_out_fall(const fit::joint::JointFit& fit, con
     const ChannelSums sums(part, of_part);
     auto inputs = LawInputs::of(part, bench.inputs.run());
     if (!inputs) return tl::unexpected(inputs.error());
-    const FormulaValues values = bench.values.at(seen);
+    const FormulaValues values = bench.products.values().at(seen);
     const std::vector<RankedLaw> ranked =
-        rank_formulas(LawSearch(values, sums).scores(), values, sums.channels());
+        rank_formulas(LawSearch(FormulaProducts(values, sums), sums).scores(), values, sums.channels());
     if (ranked.empty()) return std::nullopt;
     const Columns columns = bench.grammar.families[ranked.front().family].columns(ranked.front().inner);
     // The law on all poses, as its columns with coefficients of the part.

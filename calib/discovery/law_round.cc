@@ -103,12 +103,12 @@ bool stands_out(double log10_p, int looks) { return log10_p < limit_log10_p(look
 
 Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
   if (bench.problem.stop.stop_requested()) return fail(ErrorCode::state, "the search was stopped");
-  const LawSearch search(bench.values, sums);
+  const LawSearch search(bench.products, sums);
   const std::vector<Tried> tried = search.scores();
   LawRound out{.hypotheses = tried.size()};
   for (const Tried& t : tried)
     out.log10_p_best = std::min(out.log10_p_best, log10_p_of(t, bench.noise, sums.channels()));
-  out.ranked = rank_formulas(tried, bench.values, sums.channels());
+  out.ranked = rank_formulas(tried, bench.products.values(), sums.channels());
   if (out.ranked.empty()) return fail(ErrorCode::refused, "no formula can be tried on these poses");
   if (const auto ok = refine_inner(out.ranked, kRefined, bench.grammar, bench.inputs, sums); !ok)
     return tl::unexpected(ok.error());

@@ -22,9 +22,9 @@ inline constexpr double kFalseDiscovery = 0.01;
 struct Workbench {
   const Grammar& grammar;
   LawInputs& inputs;
-  const FormulaValues& values;
+  const FormulaProducts& products;  ///< of the first residual
   const fit::joint::JointProblem& problem;
-  const criticism::tests::Residual& residual;  ///< the first one
+  const criticism::tests::Residual& residual;
   criticism::tests::NoiseReference noise;
   std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on it, where nothing else is said
   int looks{1};                                           ///< DiscoverOptions

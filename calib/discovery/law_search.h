@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "calib/discovery/channel_sums.h"
-#include "calib/discovery/grammar.h"
-#include "calib/discovery/place.h"
+#include "calib/discovery/formula_products.h"
 
 /// Scores every formula of a grammar at every place where it can act.
 ///
@@ -14,34 +13,6 @@
 /// degrees of freedom as U has columns where nothing is there. A formula of which less than kAbsorbedShare of
 /// its length is left by the projection is a parameter of the calibration already, and is not asked about.
 namespace mgtd::calib::discovery {
-
-/// The values of every formula on every channel: they stay the same from one residual to the next.
-class FormulaValues {
- public:
-  /// Refuses a grammar that does not fit the inputs.
-  [[nodiscard]] static Result<FormulaValues> of(const Grammar& grammar, LawInputs& inputs);
-
-  struct Member {
-    std::size_t family{0}, inner{0};
-    Eigen::Index first{0}, count{0};  ///< columns
-  };
-  [[nodiscard]] const std::vector<Member>& members() const { return members_; }
-  [[nodiscard]] const Eigen::MatrixXd& on(int channel) const {
-    return columns_[static_cast<std::size_t>(channel)];
-  }
-  [[nodiscard]] const Grammar& grammar() const { return *grammar_; }
-  /// The same at some of the poses.
-  [[nodiscard]] FormulaValues at(const std::vector<std::size_t>& poses) const;
-  /// A family is asked about at a place.
-  [[nodiscard]] bool asked(const Family& family, const Place& place) const;
-
- private:
-  explicit FormulaValues(const Grammar& grammar) : grammar_(&grammar) {}
-
-  const Grammar* grammar_;
-  std::vector<Member> members_;
-  std::vector<Eigen::MatrixXd> columns_;  ///< by channel of the readings: poses x columns
-};
 
 struct Tried {
   std::size_t member{0};
@@ -52,8 +23,9 @@ struct Tried {
 
 class LawSearch {
  public:
-  /// Both must outlive this.
-  LawSearch(const FormulaValues& values, const ChannelSums& sums);
+  /// `products` of a residual that `sums` is of, or was before laws were taken out. Its values and `sums`
+  /// must outlive this.
+  LawSearch(const FormulaProducts& products, const ChannelSums& sums);
 
   /// Every question, with its score.
   [[nodiscard]] std::vector<Tried> scores() const;
@@ -67,13 +39,14 @@ class LawSearch {
   [[nodiscard]] std::vector<Largest> largest(const Scores& draws) const;
 
  private:
-  /// Formulas on one channel: columns of each orthonormal after projection, as many as count where none is
-  /// absorbed, then zeros.
+  /// Formulas on one channel.
   struct OnChannel {
-    Eigen::MatrixXd columns, taken;  ///< and what the model's parameters take of them
-    std::vector<int> rank;           ///< by member
+    /// By member: combinations of its columns, orthonormal after projection.
+    std::vector<Eigen::MatrixXd> basis;
+    Eigen::MatrixXd by_laws;  ///< what laws that were taken out take of the columns
+    [[nodiscard]] int rank(std::size_t member) const { return static_cast<int>(basis[member].cols()); }
   };
-  /// Orthonormal combinations of a formula's columns on the channels of a place.
+  /// The same on the channels of a place.
   struct Combination {
     std::size_t member{0};
     Eigen::MatrixXd basis;  ///< columns of all channels one below the other x rank
@@ -82,13 +55,17 @@ class LawSearch {
     Place place;
     std::vector<Combination> combinations;
   };
-
-  [[nodiscard]] OnChannel on_channel(int channel) const;
-  [[nodiscard]] Wide wide(const Place& place) const;
-  /// Scores of the columns of a channel: a row a column.
   template <class Scalar>
-  [[nodiscard]] std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> column_scores(
-      const Scores& scores) const;
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  [[nodiscard]] OnChannel on_channel(const FormulaProducts& products, int channel) const;
+  /// A column of `by_laws` for each of the values.
+  [[nodiscard]] Eigen::MatrixXd basis_on(const FormulaProducts& products, std::size_t member, int channel,
+                                         const Eigen::MatrixXd& by_laws) const;
+  [[nodiscard]] Wide wide(const FormulaProducts& products, const Place& place) const;
+  /// Scores of every formula's columns, by channel: a row a draw.
+  template <class Scalar>
+  [[nodiscard]] std::vector<Matrix<Scalar>> column_scores(const Scores& scores) const;
 
   const FormulaValues& values_;
   const ChannelSums& sums_;

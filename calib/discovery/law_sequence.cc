@@ -15,10 +15,11 @@ namespace {
 
 std::string name_of(std::size_t law) { return fmt::format("law{}", law + 1); }
 
-/// Each law is looked for again beside the others, until nothing changes.
-Result<void> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen::MatrixXd& of_gradient,
+/// Each law is looked for again beside the others, until nothing changes. True where one did.
+Result<bool> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen::MatrixXd& of_gradient,
                    double questions, std::vector<ChosenLaw>& laws) {
   constexpr int kSweeps = 2;
+  bool any = false;
   for (int round = 0; round < kSweeps && laws.size() > 1; ++round) {
     bool changed = false;
     for (std::size_t i = 0; i < laws.size(); ++i) {
@@ -39,8 +40,9 @@ Result<void> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen:
       laws[i] = *std::move(better);
     }
     if (!changed) break;
+    any = true;
   }
-  return {};
+  return any;
 }
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -116,10 +118,12 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
   LawSequence out{.laws = {}, .left = bare};
   Models models;
   double T = 0;
+  double log10_p_best = 0;  // of what the laws leave
   while (true) {
     const auto round = law_round(bench, out.left, out.laws.empty());
     if (!round) return tl::unexpected(round.error());
     if (out.laws.empty()) out.hypotheses = round->hypotheses;
+    log10_p_best = round->log10_p_best;
     models.push_back(model_of(out.laws.size(), T, *round));
     const bool more = stands_out(criticism::tests::best_of(round->log10_p_best, questions), bench.looks);
     if (out.laws.size() >= kMostLaws || (!out.laws.empty() && !more)) break;
@@ -134,18 +138,21 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
     take_out(out.laws.back().head, out.left);
   }
   // What is random beside fewer laws takes the place of the later ones.
-  const std::size_t with_random = best_random(models);
+  const std::size_t with_random = best_random(models), found = out.laws.size();
   if (models[with_random].random() > best_alone(models))
     out.laws.resize(std::max<std::size_t>(1, with_random));
-  if (const auto ok = sweep(bench, bare, of_gradient, questions, out.laws); !ok)
-    return tl::unexpected(ok.error());
+  const auto changed = sweep(bench, bare, of_gradient, questions, out.laws);
+  if (!changed) return tl::unexpected(changed.error());
   for (std::size_t i = 0; i < out.laws.size(); ++i) hold_against_random(models, i, out.laws[i].law);
-  out.left = bare;
-  if (out.laws.front().law.stands_out)
-    for (const ChosenLaw& law : out.laws) take_out(law.head, out.left);
-  const auto left = law_round(bench, out.left, false);
-  if (!left) return tl::unexpected(left.error());
-  out.log10_p_left = criticism::tests::best_of(left->log10_p_best, questions);
+  if (*changed || out.laws.size() != found) {
+    out.left = bare;
+    if (out.laws.front().law.stands_out)
+      for (const ChosenLaw& law : out.laws) take_out(law.head, out.left);
+    const auto left = law_round(bench, out.left, false);
+    if (!left) return tl::unexpected(left.error());
+    log10_p_best = left->log10_p_best;
+  }
+  out.log10_p_left = criticism::tests::best_of(log10_p_best, questions);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "calib/fit/joint/wandering_estimate.h"
 
@@ -44,28 +45,30 @@ class Tridiagonal {
   Eigen::VectorXd diagonal_, beside_, z_;
 };
 
-/// Of all channels together: what one of them shows is in the residual of the others, too.
-Tridiagonal tridiagonal(const Eigen::MatrixXd& A, const std::vector<int>& channels, const ChannelSums& sums) {
-  const Eigen::Index n = A.cols(), count = static_cast<Eigen::Index>(channels.size());
+/// Of all channels together: what one of them shows is in the residual of the others, too. No A: one.
+Tridiagonal tridiagonal(const std::optional<Eigen::MatrixXd>& A, const std::vector<int>& channels,
+                        const ChannelSums& sums) {
+  const Eigen::Index n = A ? A->cols() : sums.poses(), count = static_cast<Eigen::Index>(channels.size());
   Eigen::MatrixXd products(n * count, n * count);
   Eigen::VectorXd by_residual(n * count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const int c = channels[static_cast<std::size_t>(i)];
-    by_residual.segment(i * n, n) = A.transpose() * sums.score(c);
-    for (Eigen::Index j = 0; j <= i; ++j)
+    by_residual.segment(i * n, n) = A ? Eigen::VectorXd(A->transpose() * sums.score(c)) : sums.score(c);
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const int d = channels[static_cast<std::size_t>(j)];
       products.block(i * n, j * n, n, n) =
-          A.transpose() * sums.product(c, channels[static_cast<std::size_t>(j)], A);
+          A ? Eigen::MatrixXd(A->transpose() * sums.product(c, d, *A)) : sums.products(c, d);
+    }
   }
   return {products, by_residual};
 }
 
-Eigen::MatrixXd factor_of(RandomOffset kind, const fit::joint::JointProblem& problem) {
-  const auto poses = static_cast<Eigen::Index>(problem.poses.size());
-  if (kind == RandomOffset::jumps) return Eigen::MatrixXd::Identity(poses, poses);
+/// A of a walk; empty where the poses have no time.
+Eigen::MatrixXd walk_of(const fit::joint::JointProblem& problem) {
   const fit::joint::WanderingTerms terms = fit::joint::wandering_terms(problem);
   if (!terms.any()) return {};
-  Eigen::MatrixXd out(poses, fit::joint::kWanderingTerms);
-  for (Eigen::Index k = 0; k < poses; ++k)
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(problem.poses.size()), fit::joint::kWanderingTerms);
+  for (Eigen::Index k = 0; k < out.rows(); ++k)
     out.row(k) = terms.at(problem.poses[static_cast<std::size_t>(k)].t_h).transpose();
   return out;
 }
@@ -77,8 +80,9 @@ double evidence_of(RandomOffset kind, const std::vector<int>& channels, const Ch
   constexpr int kValues = 30;
   constexpr double kFirst = 1e-2, kLast = 1e5;  // of a, in units of one over the largest g
   constexpr double kNoOdds = -std::numeric_limits<double>::infinity();
-  const Eigen::MatrixXd A = factor_of(kind, problem);
-  if (A.size() == 0 || channels.empty() || channels.back() >= sums.total()) return kNoOdds;
+  std::optional<Eigen::MatrixXd> A;
+  if (kind == RandomOffset::walk) A = walk_of(problem);
+  if ((A && A->size() == 0) || channels.empty() || channels.back() >= sums.total()) return kNoOdds;
   const Tridiagonal all = tridiagonal(A, channels, sums);
   const double largest = all.largest_eigenvalue();
   if (!(largest > 0)) return kNoOdds;

@@ -52,6 +52,8 @@ class Whitener {
 
   [[nodiscard]] double rho() const { return rho_; }
   [[nodiscard]] Eigen::Index channels() const { return channels_; }
+  /// Of what apply() takes.
+  [[nodiscard]] Eigen::Index pose_rows() const { return pose_rows_; }
   /// Of what apply() gives: one for each reading, and one more where the field is known as a vector.
   [[nodiscard]] Eigen::Index rows_per_pose() const { return pose_rows_ - fit::joint::kNuisances; }
   /// ln of the determinant of the covariance of the readings, less that of their weights.

@@ -14,12 +14,13 @@ namespace {
 TEST(LawRound, EndsWhenTheFitIsToldToStop) {
   const auto s = testing::scene({}, 8);
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
+  const FormulaProducts products(values, s->sums);
   fit::joint::JointProblem problem = s->fit.problem;
   std::stop_source stop;
   problem.stop = stop.get_token();
   const Workbench bench{.grammar = s->formulas,
                         .inputs = s->inputs,
-                        .values = values,
+                        .products = products,
                         .problem = problem,
                         .residual = s->residual,
                         .noise = {}};

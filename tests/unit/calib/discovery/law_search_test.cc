@@ -18,7 +18,7 @@ namespace {
 TEST(LawSearch, ScoresAreThoseOfTheFittedFormulas) {
   const auto s = testing::scene({}, 8);
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
-  const std::vector<Tried> tried = LawSearch(values, s->sums).scores();
+  const std::vector<Tried> tried = LawSearch(FormulaProducts(values, s->sums), s->sums).scores();
   EXPECT_GT(tried.size(), 15'000U);
   std::set<Place::Kind> kinds;
   for (std::size_t i = 0; i < tried.size(); i += 397) {
@@ -46,7 +46,7 @@ TEST(LawSearch, WhatTheCalibrationTakesUpIsNotAsked) {
 TEST(LawSearch, TheLargestOfNoiseIsThatOfSomeThousandIndependentQuestions) {
   const auto s = testing::scene({}, 9);
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
-  const LawSearch search(values, s->sums);
+  const LawSearch search(FormulaProducts(values, s->sums), s->sums);
   std::mt19937_64 random(2);
   const std::vector<LawSearch::Largest> all = search.largest(s->sums.draws(300, random));
   const auto one_coefficient = std::find_if(all.begin(), all.end(), [](const LawSearch::Largest& largest) {

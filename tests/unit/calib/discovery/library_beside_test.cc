@@ -24,6 +24,7 @@ class LibraryBeside : public ::testing::Test {
  protected:
   std::unique_ptr<testing::Scene> scene_ = testing::scene({.noise_nT = 0.05, .hidden = two_laws}, 3);
   FormulaValues values_ = testing::must(FormulaValues::of(scene_->formulas, scene_->inputs));
+  FormulaProducts products_{values_, scene_->sums};
   tests::CandidateEffects candidates_ = tests::library_candidates(scene_->table);
   Place place_{Place::Kind::axis, 5};
 
@@ -35,7 +36,7 @@ class LibraryBeside : public ::testing::Test {
             tests::score_family(scene_->fit.problem, scene_->fit.state, scene_->residual, {}, candidate));
     return {.grammar = scene_->formulas,
             .inputs = scene_->inputs,
-            .values = values_,
+            .products = products_,
             .problem = scene_->fit.problem,
             .residual = scene_->residual,
             .noise = {},
