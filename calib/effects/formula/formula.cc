@@ -176,6 +176,30 @@ std::string column_needed(const FormulaName& name, Level level) {
   return of.source == Source::column ? of.name : name.name;
 }
 
+/// The level at which a name stands for something, where that is none of a column; empty where it is none.
+std::string_view level_that_knows(const std::string& name) {
+  for (const auto& [level, text] : {std::pair{Level::axis, "axis"}, std::pair{Level::platform, "platform"},
+                                    std::pair{Level::site, "site"}}) {
+    const Source source = formula_name(name, level, std::nullopt, 0).source;
+    if (source != Source::column && source != Source::history) return text;
+  }
+  return {};
+}
+
+std::string_view level_text(const EffectSpec& spec, Level level) {
+  if (level == Level::site) return of_gradient(spec) ? "gradient" : "site";
+  return level == Level::platform ? "platform" : "axis";
+}
+
+/// What may stand in a formula beside columns.
+std::string_view names_known(const EffectSpec& spec, Level level) {
+  if (of_gradient(spec)) return "coefficients k, or k1 and k2; t_h, pose, lag600_X of a column";
+  if (level == Level::site) return "coefficients k or k1 to k3; t_h, pose, px, py, pz";
+  if (level == Level::platform)
+    return "coefficients k or k1 to k3; t_h, pose, T_degC, b, bx, by, bz, gx, gy, gz";
+  return "coefficients k or k1 to k3; t_h, pose, T_degC, u, ux, uy, uz";
+}
+
 /// ", did you mean 'T1_degC'?" where a column has nearly this name.
 std::string meant(const std::string& wrong, const std::vector<std::string>& columns) {
   const auto near = nearest_word(wrong, columns);
@@ -249,21 +273,23 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
     const std::string column = column_needed(name, formula.level());
     if (column.empty() || column == "pose") continue;
     if (std::find(there.begin(), there.end(), column) != there.end()) continue;
+    const auto wrong = [&](std::string message, std::string remedy) {
+      return tl::unexpected(expression_error(*spec.find("expr"), column_of(*spec.find("expr"), name.name),
+                                             std::move(message), std::move(remedy)));
+    };
     if (const auto sensor = reading_of(column, table)) {
       if (formula.at(*sensor).empty()) continue;
-      return tl::unexpected(expression_error(
-          *spec.find("expr"), column_of(*spec.find("expr"), name.name),
-          fmt::format("{} acts on s{}, whose reading it is to explain", spec.name, *sensor + 1),
-          "use u, ux, uy, uz for the sensor's own field; readings of other sensors may stand in a formula"));
+      return wrong(fmt::format("{} acts on s{}, whose reading it is to explain", spec.name, *sensor + 1),
+                   formula.level() == Level::site
+                       ? "a law of the site acts on every sensor: no reading may stand in it"
+                       : "use u, ux, uy, uz for the sensor's own field; readings of other sensors may stand "
+                         "in a formula");
     }
-    return tl::unexpected(expression_error(
-        *spec.find("expr"), column_of(*spec.find("expr"), name.name),
-        fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there)),
-        fmt::format("columns: {}; coefficients k or k1 to k3; t_h, pose, {}", fmt::join(there, ", "),
-                    formula.level() == Level::axis       ? "T_degC, u, ux, uy, uz"
-                    : formula.level() == Level::platform ? "T_degC, b, bx, by, bz, gx, gy, gz"
-                    : of_gradient(spec)                  ? "lag600_X of a column"
-                                                         : "px, py, pz")));
+    const std::string_view known_at = level_that_knows(name.name);
+    return wrong(known_at.empty() ? fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there))
+                                  : fmt::format("'{}' is known at level {}, and {} is of level {}", name.name,
+                                                known_at, spec.name, level_text(spec, formula.level())),
+                 fmt::format("columns: {}; {}", fmt::join(there, ", "), names_known(spec, formula.level())));
   }
   return {};
 }

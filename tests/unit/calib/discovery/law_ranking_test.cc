@@ -37,8 +37,8 @@ TEST(LawRanking, TheInnerNumberIsRefinedBetweenTheGrid) {
   };
   const auto s = testing::scene(hidden, 3);
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
-  std::vector<RankedLaw> laws =
-      rank_formulas(LawSearch(FormulaProducts(values, s->sums), s->sums).scores(), values, s->sums.channels());
+  std::vector<RankedLaw> laws = rank_formulas(LawSearch(FormulaProducts(values, s->sums), s->sums).scores(),
+                                              values, s->sums.channels());
   ASSERT_TRUE(refine_inner(laws, 30, s->formulas, s->inputs, s->sums));
   share_probability(laws);
   EXPECT_EQ(laws.front().where, "s3.y");
@@ -57,8 +57,8 @@ TEST(LawRanking, AnInnerNumberIsAsFineAsTheLawIsLarge) {
   };
   const auto s = testing::scene(hidden, 3);
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
-  std::vector<RankedLaw> laws =
-      rank_formulas(LawSearch(FormulaProducts(values, s->sums), s->sums).scores(), values, s->sums.channels());
+  std::vector<RankedLaw> laws = rank_formulas(LawSearch(FormulaProducts(values, s->sums), s->sums).scores(),
+                                              values, s->sums.channels());
   ASSERT_TRUE(refine_inner(laws, 3, s->formulas, s->inputs, s->sums));
   const Family& family = s->formulas.families[laws.front().family];
   ASSERT_EQ(family.inner_unit, kPeriodUnit);

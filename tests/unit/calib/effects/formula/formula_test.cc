@@ -187,6 +187,22 @@ TEST(Formula, AColumnThatNoPoseHasIsNamedWithThoseThereAre) {
   EXPECT_TRUE(check_columns(*EffectSpec::parse("a,expr=2*lamp_A"), table));
 }
 
+TEST(Formula, ANameOfAnotherLevelIsToldFromAColumn) {
+  const PoseTable table = warm_and_bent(4);
+  const auto refused = [&](const char* spec) {
+    const auto ok = check_columns(*EffectSpec::parse(spec), table);
+    return ok ? Error{} : ok.error();
+  };
+  const Error field = refused("a,level=gradient,expr=t_h*u");
+  EXPECT_THAT(field.message, HasSubstr("column 5: 'u' is known at level axis, and a is of level gradient"));
+  EXPECT_THAT(field.remedy, HasSubstr("coefficients k, or k1 and k2;"));
+  EXPECT_THAT(refused("a,level=site,expr=gz").message, HasSubstr("'gz' is known at level platform"));
+  EXPECT_THAT(refused("a,expr=px").message, HasSubstr("'px' is known at level site, and a is of level axis"));
+  EXPECT_THAT(refused("a,expr=lag600_lampA").message, HasSubstr("no pose has a 'lag600_lampA'"));
+  EXPECT_THAT(refused("a,level=gradient,expr=s1_x_nT").remedy,
+              HasSubstr("a law of the site acts on every sensor"));
+}
+
 TEST(Formula, DegreesHaveFunctionsOfTheirOwn) {
   EXPECT_NEAR((*Expression::parse("sind(30) + cosd(60) + tand(45)"))({}), 2.0, 1e-12);
 }
