@@ -60,13 +60,15 @@ std::string parameter_table(const calibration::Calibration& c, std::size_t width
   return column_blocks(rows, kName, fits ? usual : cell, width);
 }
 
+/// Of a formula with several coefficients the text stands once, above them.
 std::string effect_table(const std::vector<calibration::CalibratedEffect>& effects) {
   std::string out;
   for (const calibration::CalibratedEffect& e : effects) {
-    for (const calibration::EffectCoefficient& c : e.coefficients) {
-      out += fmt::format("{:<28}{:>24} {}\n", fmt::format("{} {}", e.effect, c.name), with_sd(c.value, c.sd),
-                         c.unit);
-    }
+    const bool once = e.coefficients.size() > 1 && e.effect.find("expr=") != std::string::npos;
+    if (once) out += e.effect + "\n";
+    for (const calibration::EffectCoefficient& c : e.coefficients)
+      out += fmt::format("{:<28}{:>24} {}\n", fmt::format("{} {}", once ? " " : e.effect, c.name),
+                         with_sd(c.value, c.sd), c.unit);
   }
   return out;
 }

@@ -47,6 +47,17 @@ TEST(CalibrationText, ShowsParametersEffectsAndChecks) {
   EXPECT_THAT(text, HasSubstr("  FAIL  residual             2 nT (limit 1 nT)\n        -> look\n"));
 }
 
+TEST(CalibrationText, AFormulaStandsOnceAboveItsCoefficients) {
+  calibration::Calibration c = four_sensors();
+  const std::string lift = "lift,level=gradient,expr=k1*t_h + k2*t_h^2";
+  c.effects.push_back({lift, {{"Gxx.k1", 25, 0.5, "nT/m"}, {"Gxx.k2", 3, 0.5, "nT/m"}}, {}});
+  c.effects.push_back({"dip@s1.x,expr=t_h", {{"s1.x", 2, 0.5, "nT"}}, {}});
+  const std::string text = to_text(c);
+  EXPECT_EQ(text.find(lift), text.rfind(lift));
+  EXPECT_THAT(text, HasSubstr(lift + "\n  Gxx.k1 "));
+  EXPECT_THAT(text, HasSubstr("dip@s1.x,expr=t_h s1.x "));
+}
+
 TEST(CalibrationText, TheTableOfParametersKeepsToTheWidth) {
   const auto c = four_sensors();
   for (const std::size_t width : {60U, 80U, 100U, 120U})
