@@ -62,7 +62,10 @@ DconSettings read_dcon_settings(Settings& s) {
 
 DconDriver::DconDriver(DconSettings settings)
     : LineDevice({Ending::cr, kLongestDconLine, settings.baud, kDconReopen_s}),
-      settings_(std::move(settings)) {}
+      settings_(std::move(settings)) {
+  for (const InputChannel& channel : settings_.channels)
+    settings_.inputs = std::max(settings_.inputs, channel.index + 1);
+}
 
 std::unique_ptr<Device> DconDriver::make(int /*slot*/, Settings& settings) {
   return std::make_unique<DconDriver>(read_dcon_settings(settings));

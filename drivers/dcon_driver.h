@@ -37,7 +37,7 @@ struct DconSettings {
   int baud{kDefaultBaud};
   std::string address{"01"};
   bool checksum{false};
-  std::size_t inputs{0};               ///< those of the module that are listed, used or not
+  std::size_t inputs{0};               ///< of the module; no fewer than are used
   std::vector<InputChannel> channels;  ///< those that are used
   double every_s{1};
 };

@@ -46,6 +46,19 @@ TEST(DconDriver, AsksForItsChannelsAndNamesThem) {
   EXPECT_TRUE(driver.health().balanced());
 }
 
+TEST(DconDriver, AChannelThatTheModuleDoesNotSendIsNotRead) {
+  DconSettings settings = three_channels();
+  settings.inputs = 0;
+  DconDriver driver(settings);
+  DeviceBench bench(driver, [](std::string_view sent) -> std::string {
+    return sent == "#01\r" ? ">+025.00+001.00\r" : "";
+  });
+  bench.open();
+  bench.pass(2);
+  EXPECT_EQ(driver.health().state, LinkState::failed);
+  EXPECT_THAT(driver.health().detail, HasSubstr("sends 2 channels, 3 are configured"));
+}
+
 TEST(DconDriver, AChannelOutOfRangeIsLeftOut) {
   DconDriver driver(three_channels());
   DeviceBench bench(driver, [](std::string_view sent) -> std::string {
