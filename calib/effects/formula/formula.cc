@@ -39,13 +39,19 @@ Result<Level> level_of(const EffectSpec& spec) {
               "axis, platform, site or gradient");
 }
 
+/// As the user writes it.
+std::string_view level_text(const EffectSpec& spec, Level level) {
+  if (level == Level::site) return of_gradient(spec) ? "gradient" : "site";
+  return level == Level::platform ? "platform" : "axis";
+}
+
 Result<Where> place_of(const EffectSpec& spec, Level level) {
   const bool site = level == Level::site;
   if (!spec.where)
     return Where{.scale = site ? Where::Scale::own : Where::Scale::each_axis, .sensors = spec.sensors};
   if (site != (spec.where->scale == Where::Scale::own)) {
     return fail(ErrorCode::usage,
-                fmt::format("{} at level {} cannot be laid over '{}'", spec.name, to_string(level),
+                fmt::format("{} at level {} cannot be laid over '{}'", spec.name, level_text(spec, level),
                             site ? spec.where->text() : "site"),
                 site ? "leave the part after '@' out: it has coefficients of its own, for the whole array"
                      : "all, each-sensor, each-axis, a sensor (s3) or an axis (s3.z)");
@@ -176,19 +182,17 @@ std::string column_needed(const FormulaName& name, Level level) {
   return of.source == Source::column ? of.name : name.name;
 }
 
-/// The level at which a name stands for something, where that is none of a column; empty where it is none.
-std::string_view level_that_knows(const std::string& name) {
+/// The levels at which a name stands for a value, "axis or platform"; empty where it may be a column only.
+std::string levels_that_know(const std::string& name) {
+  const auto history = history_name(name);
+  const bool before = history && history->kind == HistoryName::Kind::previous;
+  std::vector<std::string_view> out;
   for (const auto& [level, text] : {std::pair{Level::axis, "axis"}, std::pair{Level::platform, "platform"},
                                     std::pair{Level::site, "site"}}) {
-    const Source source = formula_name(name, level, std::nullopt, 0).source;
-    if (source != Source::column && source != Source::history) return text;
+    const Source source = formula_name(before ? history->of : name, level, std::nullopt, 0).source;
+    if (source != Source::column && source != Source::history) out.emplace_back(text);
   }
-  return {};
-}
-
-std::string_view level_text(const EffectSpec& spec, Level level) {
-  if (level == Level::site) return of_gradient(spec) ? "gradient" : "site";
-  return level == Level::platform ? "platform" : "axis";
+  return fmt::format("{}", fmt::join(out, " or "));
 }
 
 /// What may stand in a formula beside columns.
@@ -202,6 +206,7 @@ std::string_view names_known(const EffectSpec& spec, Level level) {
 
 /// ", did you mean 'T1_degC'?" where a column has nearly this name.
 std::string meant(const std::string& wrong, const std::vector<std::string>& columns) {
+  if (wrong.size() == 1) return {};  // a letter is near to every other
   const auto near = nearest_word(wrong, columns);
   return near ? fmt::format(", did you mean '{}'?", *near) : "";
 }
@@ -277,19 +282,25 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
       return tl::unexpected(expression_error(*spec.find("expr"), column_of(*spec.find("expr"), name.name),
                                              std::move(message), std::move(remedy)));
     };
+    const Level level = formula.level();
     if (const auto sensor = reading_of(column, table)) {
       if (formula.at(*sensor).empty()) continue;
+      if (level == Level::site)
+        return wrong(fmt::format("{} acts on every sensor, and '{}' is a reading that it is to explain",
+                                 spec.name, name.name),
+                     "a law of the site may hold columns that are no readings");
       return wrong(fmt::format("{} acts on s{}, whose reading it is to explain", spec.name, *sensor + 1),
-                   formula.level() == Level::site
-                       ? "a law of the site acts on every sensor: no reading may stand in it"
+                   level == Level::platform
+                       ? "use b, bx, by, bz for the field at the platform"
                        : "use u, ux, uy, uz for the sensor's own field; readings of other sensors may stand "
                          "in a formula");
     }
-    const std::string_view known_at = level_that_knows(name.name);
-    return wrong(known_at.empty() ? fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there))
-                                  : fmt::format("'{}' is known at level {}, and {} is of level {}", name.name,
-                                                known_at, spec.name, level_text(spec, formula.level())),
-                 fmt::format("columns: {}; {}", fmt::join(there, ", "), names_known(spec, formula.level())));
+    if (const std::string known = levels_that_know(name.name); !known.empty())
+      return wrong(fmt::format("'{}' is known at level {}, and {} is of level {}", name.name, known,
+                               spec.name, level_text(spec, level)),
+                   fmt::format("give another level, or one of the columns {}", fmt::join(there, ", ")));
+    return wrong(fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there)),
+                 fmt::format("columns: {}; {}", fmt::join(there, ", "), names_known(spec, level)));
   }
   return {};
 }
