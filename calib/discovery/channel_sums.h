@@ -16,9 +16,10 @@
 ///     s_c = Z_c' r                score of g       g' s_c
 ///     G_cd = Z_c' Z_d             product of two   g' G_cd h
 ///
-/// Z_c itself is never made: with W the whitener and E_c the rows of one unit at each pose, G_cd = h_cd -
-/// U_c' U_d, where h_cd = E_c' W'W E_d and U_c = B' W E_c is what the model's parameters can take. Where
-/// poses are uncorrelated h_cd is diagonal, else a full matrix.
+/// Z_c itself is never made: with W the whitener over the residual's unit, E_c the rows of one unit at each
+/// pose and B the basis of the model's parameters (projection.h), G_cd = h_cd - U_c' U_d, where h_cd =
+/// E_c' W'W E_d and U_c = B' W E_c is what those parameters can take. Where the noise is uncorrelated from
+/// pose to pose h_cd is diagonal, else a full matrix.
 ///
 /// Channels 0 .. 3N-1 are those of the readings; behind them stand five components of a gradient of the
 /// site's field (kGradient), where the poses have table angles.

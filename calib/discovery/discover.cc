@@ -45,7 +45,11 @@ Result<std::optional<fit::joint::JointFit>> fit_with(const PoseTable& table, fit
   start.coefficients.conservativeResizeLike(Eigen::VectorXd::Zero(coefficients));
   auto fit = fit::joint::fit_joint_at_size(table, *joint, &start);
   if (!fit) return std::nullopt;
-  return *std::move(fit);
+  if (!(fit->noise_inflation > 1)) return *std::move(fit);
+  // Where the law accounts for nearly all the noise is no longer inflated: as in a fit that begins so.
+  joint->noise_inflation = 1;
+  auto again = fit::joint::fit_joint_at_size(table, *joint, &fit->state);
+  return again ? *std::move(again) : *std::move(fit);
 }
 
 /// The noise that the search stands against. Where the residual says that it is larger than the readings do,

@@ -126,11 +126,12 @@ std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& su
                                   std::uint64_t seed) {
   constexpr int kTogether = 250;  // scores of every formula on every draw: some ten megabytes, not hundreds
   std::mt19937_64 random(seed);
+  const std::vector<Eigen::MatrixXf> unit_columns = search.unit_columns();
   std::vector<double> out;
   while (static_cast<int>(out.size()) < draws) {
     const int count = std::min(kTogether, draws - static_cast<int>(out.size()));
     std::vector<double> least(static_cast<std::size_t>(count), 0.0);
-    for (const LawSearch::Largest& largest : search.largest(sums.draws(count, random))) {
+    for (const LawSearch::Largest& largest : search.largest(sums.draws(count, random), unit_columns)) {
       const double price = std::log10(largest.alike);
       for (std::size_t i = 0; i < least.size(); ++i)
         least[i] =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/law_search.h"
 
-#include <cmath>
 #include <map>
 
 #include "calib/linear/product.h"
@@ -17,7 +16,7 @@ LawSearch::LawSearch(const FormulaProducts& products, const ChannelSums& sums)
 
 LawSearch::OnChannel LawSearch::on_channel(const FormulaProducts& products, int c) const {
   OnChannel out{.basis = std::vector<Eigen::MatrixXd>(values_.members().size()),
-                .by_laws = sums_.taken_up_by_laws(c, values_.on(c < sums_.channels() ? c : 0))};
+                .by_laws = sums_.taken_up_by_laws(c, values_on(c))};
   for (std::size_t i = 0; i < values_.members().size(); ++i)
     if (products.have(i, c, c)) out.basis[i] = basis_on(products, i, c, out.by_laws);
   return out;
@@ -74,53 +73,39 @@ LawSearch::Wide LawSearch::wide(const FormulaProducts& products, const Place& pl
             of_a.transpose() * products.before(i, on[a], on[b]) * of_b;
       }
     }
-    const Eigen::MatrixXd orthonormal = combinations(left, before, sums_.absorbed_share());
-    if (orthonormal.cols() == 0) continue;
-    Eigen::MatrixXd basis =
-        Eigen::MatrixXd::Zero(m.count * static_cast<Eigen::Index>(on.size()), orthonormal.cols());
-    for (std::size_t a = 0; a < on.size(); ++a)
-      if (first[a + 1] > first[a])
-        basis.middleRows(static_cast<Eigen::Index>(a) * m.count, m.count) =
-            channel(a).basis[i] * orthonormal.middleRows(first[a], first[a + 1] - first[a]);
-    out.combinations.push_back({i, std::move(basis)});
+    Eigen::MatrixXd basis = combinations(left, before, sums_.absorbed_share());
+    if (basis.cols() > 0) out.combinations.push_back({i, std::move(basis)});
   }
   return out;
 }
 
-template <class Scalar>
-std::vector<LawSearch::Matrix<Scalar>> LawSearch::column_scores(const Scores& scores) const {
-  std::vector<Matrix<Scalar>> out;
-  for (int c = 0; c < sums_.total(); ++c)
-    out.push_back(
-        linear::transposed_product(Matrix<Scalar>(scores[static_cast<std::size_t>(c)].cast<Scalar>()),
-                                   Matrix<Scalar>(values_.on(c < sums_.channels() ? c : 0).cast<Scalar>())));
-  return out;
-}
-
 std::vector<Tried> LawSearch::scores() const {
-  Scores residual;
-  for (int c = 0; c < sums_.total(); ++c) residual.emplace_back(sums_.score(c));
-  const auto by_column = column_scores<double>(residual);
+  std::vector<Eigen::RowVectorXd> by_column;
+  for (int c = 0; c < sums_.total(); ++c) by_column.emplace_back(sums_.score(c).transpose() * values_on(c));
   const auto& members = values_.members();
+  const auto unit_scores = [&](int c, std::size_t i) -> Eigen::RowVectorXd {
+    const auto channel = static_cast<std::size_t>(c);
+    return by_column[channel].segment(members[i].first, members[i].count) * channels_[channel].basis[i];
+  };
   std::vector<Tried> out;
   for (int c = 0; c < sums_.channels(); ++c) {
     const Place place{Place::Kind::axis, c};
-    const OnChannel& channel = channels_[static_cast<std::size_t>(c)];
     for (std::size_t i = 0; i < members.size(); ++i) {
-      if (channel.rank(i) == 0 || !values_.asked(values_.grammar().families[members[i].family], place))
-        continue;
-      const auto v = by_column[static_cast<std::size_t>(c)].middleCols(members[i].first, members[i].count);
-      out.push_back({i, place, channel.rank(i), (v * channel.basis[i]).squaredNorm()});
+      const int k = channels_[static_cast<std::size_t>(c)].rank(i);
+      if (k == 0 || !values_.asked(values_.grammar().families[members[i].family], place)) continue;
+      out.push_back({i, place, k, unit_scores(c, i).squaredNorm()});
     }
   }
   for (const Wide& wide : wide_) {
     const std::vector<int> on = wide.place.channels(sums_.channels());
     for (const Combination& combination : wide.combinations) {
-      const FormulaValues::Member& m = members[combination.member];
       Eigen::RowVectorXd v(combination.basis.rows());
-      for (std::size_t a = 0; a < on.size(); ++a)
-        v.segment(static_cast<Eigen::Index>(a) * m.count, m.count) =
-            by_column[static_cast<std::size_t>(on[a])].middleCols(m.first, m.count);
+      Eigen::Index at = 0;
+      for (const int c : on) {
+        const int rank = channels_[static_cast<std::size_t>(c)].rank(combination.member);
+        if (rank > 0) v.segment(at, rank) = unit_scores(c, combination.member);
+        at += rank;
+      }
       out.push_back({combination.member, wide.place, static_cast<int>(combination.basis.cols()),
                      (v * combination.basis).squaredNorm()});
     }
@@ -128,9 +113,28 @@ std::vector<Tried> LawSearch::scores() const {
   return out;
 }
 
-std::vector<LawSearch::Largest> LawSearch::largest(const Scores& draws) const {
+std::vector<Eigen::MatrixXf> LawSearch::unit_columns() const {
+  const auto& members = values_.members();
+  std::vector<Eigen::MatrixXf> out;
+  for (int c = 0; c < sums_.total(); ++c) {
+    const Eigen::MatrixXd& G = values_on(c);
+    const OnChannel& channel = channels_[static_cast<std::size_t>(c)];
+    Eigen::MatrixXf columns = Eigen::MatrixXf::Zero(G.rows(), G.cols());
+    for (std::size_t i = 0; i < members.size(); ++i)
+      if (channel.rank(i) > 0)
+        columns.middleCols(members[i].first, channel.rank(i)) =
+            (G.middleCols(members[i].first, members[i].count) * channel.basis[i]).cast<float>();
+    out.push_back(std::move(columns));
+  }
+  return out;
+}
+
+std::vector<LawSearch::Largest> LawSearch::largest(const Scores& draws,
+                                                   const std::vector<Eigen::MatrixXf>& unit_columns) const {
   const Eigen::Index n = draws.front().cols();
-  const auto by_column = column_scores<float>(draws);
+  std::vector<Eigen::MatrixXf> by_column;  // a row a draw
+  for (std::size_t c = 0; c < unit_columns.size(); ++c)
+    by_column.push_back(linear::transposed_product(Eigen::MatrixXf(draws[c].cast<float>()), unit_columns[c]));
   const auto& members = values_.members();
   std::map<std::pair<Place::Kind, int>, Largest> out;
   const auto top = [&](const Place& place, int k) -> Eigen::ArrayXf& {
@@ -140,33 +144,28 @@ std::vector<LawSearch::Largest> LawSearch::largest(const Scores& draws) const {
             static_cast<int>(place.channels(sums_.channels()).size()), Eigen::ArrayXf::Zero(n)};
     return at.S;
   };
-  Eigen::MatrixXf v, projected;
   for (int c = 0; c < sums_.channels(); ++c) {
     const Place place{Place::Kind::axis, c};
-    const OnChannel& channel = channels_[static_cast<std::size_t>(c)];
-    const Eigen::MatrixXf& all = by_column[static_cast<std::size_t>(c)];
+    const auto channel = static_cast<std::size_t>(c);
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const int k = channel.rank(i);
+      const int k = channels_[channel].rank(i);
       if (k == 0 || !values_.asked(values_.grammar().families[members[i].family], place)) continue;
-      const FormulaValues::Member& m = members[i];
       Eigen::ArrayXf& S = top(place, k);
-      if (m.count == 1) {
-        S = S.max(all.col(m.first).array().square() *
-                  static_cast<float>(std::pow(channel.basis[i](0, 0), 2)));
-      } else {
-        projected.noalias() = all.middleCols(m.first, m.count) * channel.basis[i].cast<float>();
-        S = S.max(projected.rowwise().squaredNorm().array());
-      }
+      S = S.max(by_column[channel].middleCols(members[i].first, k).rowwise().squaredNorm().array());
     }
   }
+  Eigen::MatrixXf v, projected;
   for (const Wide& wide : wide_) {
     const std::vector<int> on = wide.place.channels(sums_.channels());
     for (const Combination& combination : wide.combinations) {
-      const FormulaValues::Member& m = members[combination.member];
       v.resize(n, combination.basis.rows());
-      for (std::size_t a = 0; a < on.size(); ++a)
-        v.middleCols(static_cast<Eigen::Index>(a) * m.count, m.count) =
-            by_column[static_cast<std::size_t>(on[a])].middleCols(m.first, m.count);
+      Eigen::Index at = 0;
+      for (const int c : on) {
+        const auto channel = static_cast<std::size_t>(c);
+        const int rank = channels_[channel].rank(combination.member);
+        v.middleCols(at, rank) = by_column[channel].middleCols(members[combination.member].first, rank);
+        at += rank;
+      }
       projected.noalias() = v * combination.basis.cast<float>();
       Eigen::ArrayXf& S = top(wide.place, static_cast<int>(combination.basis.cols()));
       S = S.max(projected.rowwise().squaredNorm().array());

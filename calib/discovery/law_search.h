@@ -23,12 +23,17 @@ struct Tried {
 
 class LawSearch {
  public:
-  /// `products` of a residual that `sums` is of, or was before laws were taken out. Its values and `sums`
+  /// `products`: of `sums`, or of what it was before laws were taken out. The formulas' values and `sums`
   /// must outlive this.
   LawSearch(const FormulaProducts& products, const ChannelSums& sums);
 
   /// Every question, with its score.
   [[nodiscard]] std::vector<Tried> scores() const;
+
+  /// By channel of ChannelSums: what combinations of a formula's columns have unit length after projection,
+  /// as many as it has, at the places of its columns, then zeros. Whatever size a formula has, single
+  /// precision is enough for them.
+  [[nodiscard]] std::vector<Eigen::MatrixXf> unit_columns() const;
 
   /// The largest S of draws of noise, by kind of place and k.
   struct Largest {
@@ -36,7 +41,8 @@ class LawSearch {
     int k{0}, alike{1}, axes{1};
     Eigen::ArrayXf S;  ///< by draw
   };
-  [[nodiscard]] std::vector<Largest> largest(const Scores& draws) const;
+  [[nodiscard]] std::vector<Largest> largest(const Scores& draws,
+                                             const std::vector<Eigen::MatrixXf>& unit_columns) const;
 
  private:
   /// Formulas on one channel.
@@ -46,26 +52,23 @@ class LawSearch {
     Eigen::MatrixXd by_laws;  ///< what laws that were taken out take of the columns
     [[nodiscard]] int rank(std::size_t member) const { return static_cast<int>(basis[member].cols()); }
   };
-  /// The same on the channels of a place.
+  /// Combinations of a formula's columns on all channels of a place, orthonormal after projection.
   struct Combination {
     std::size_t member{0};
-    Eigen::MatrixXd basis;  ///< columns of all channels one below the other x rank
+    Eigen::MatrixXd basis;  ///< of the unit columns of all channels, one below the other x rank
   };
   struct Wide {
     Place place;
     std::vector<Combination> combinations;
   };
-  template <class Scalar>
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-
   [[nodiscard]] OnChannel on_channel(const FormulaProducts& products, int channel) const;
   /// A column of `by_laws` for each of the values.
   [[nodiscard]] Eigen::MatrixXd basis_on(const FormulaProducts& products, std::size_t member, int channel,
                                          const Eigen::MatrixXd& by_laws) const;
   [[nodiscard]] Wide wide(const FormulaProducts& products, const Place& place) const;
-  /// Scores of every formula's columns, by channel: a row a draw.
-  template <class Scalar>
-  [[nodiscard]] std::vector<Matrix<Scalar>> column_scores(const Scores& scores) const;
+  [[nodiscard]] const Eigen::MatrixXd& values_on(int channel) const {
+    return values_.on(channel < sums_.channels() ? channel : 0);
+  }
 
   const FormulaValues& values_;
   const ChannelSums& sums_;

@@ -36,7 +36,8 @@ Result<bool> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen:
       if (!again) return tl::unexpected(again.error());
       auto better = chosen_law(beside, sums, *again, questions, name_of(i));
       if (!better) return tl::unexpected(better.error());
-      changed = changed || better->law.formulas.front().formula != laws[i].law.formulas.front().formula;
+      changed = changed || better->law.stands_out != laws[i].law.stands_out ||
+                better->law.formulas.front().formula != laws[i].law.formulas.front().formula;
       laws[i] = *std::move(better);
     }
     if (!changed) break;

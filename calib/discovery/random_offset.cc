@@ -45,7 +45,8 @@ class Tridiagonal {
   Eigen::VectorXd diagonal_, beside_, z_;
 };
 
-/// Of all channels together: what one of them shows is in the residual of the others, too. No A: one.
+/// Of all channels together: what one of them shows is in the residual of the others, too. Without A: of
+/// every pose by itself.
 Tridiagonal tridiagonal(const std::optional<Eigen::MatrixXd>& A, const std::vector<int>& channels,
                         const ChannelSums& sums) {
   const Eigen::Index n = A ? A->cols() : sums.poses(), count = static_cast<Eigen::Index>(channels.size());

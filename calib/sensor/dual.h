@@ -19,7 +19,7 @@ struct Dual {
   double v;
   Derivatives d;
 
-  /// Like a double, not initialised; a build that checks makes it no number, so that it is seen.
+  /// Like a double, not initialised. A debug build sets NaN, so that a use before it is assigned shows.
 #ifdef NDEBUG
   Dual() {}
 #else

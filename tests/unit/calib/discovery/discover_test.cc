@@ -46,6 +46,18 @@ TEST(Discover, NoiseHasNoLaw) {
   }
 }
 
+/// Draws are scored in single precision: the unit of a column must not matter.
+TEST(Discover, AsksAsManyQuestionsWhateverTheUnitOfAColumn) {
+  PoseTable table = testing::run_with({.noise_nT = 0.05}, 4);
+  std::vector<double> questions;
+  for (const double size : {1.0, 1e9, 1e-9}) {
+    for (Pose& pose : table.poses) pose.covariates["lamp"] = size * (1 + std::sin(*pose.t_s / 500));
+    questions.push_back(must(discover(table, {.fit = {}, .draws = 100, .checks = false})).questions);
+  }
+  EXPECT_NEAR(questions[1], questions[0], 1e-3 * questions[0]);
+  EXPECT_NEAR(questions[2], questions[0], 1e-3 * questions[0]);
+}
+
 TEST(Discover, NamesAHarmonicOfTheAzimuth) {
   const DiscoveryReport r =
       found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4, true);

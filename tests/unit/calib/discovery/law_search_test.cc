@@ -48,7 +48,8 @@ TEST(LawSearch, TheLargestOfNoiseIsThatOfSomeThousandIndependentQuestions) {
   const FormulaValues values = testing::must(FormulaValues::of(s->formulas, s->inputs));
   const LawSearch search(FormulaProducts(values, s->sums), s->sums);
   std::mt19937_64 random(2);
-  const std::vector<LawSearch::Largest> all = search.largest(s->sums.draws(300, random));
+  const std::vector<LawSearch::Largest> all =
+      search.largest(s->sums.draws(300, random), search.unit_columns());
   const auto one_coefficient = std::find_if(all.begin(), all.end(), [](const LawSearch::Largest& largest) {
     return largest.kind == Place::Kind::axis && largest.k == 1;
   });

@@ -40,7 +40,7 @@ TEST(RemainingLaw, OfAllInsteadOfAnEffectThatDescribesAPart) {
   EXPECT_THAT(law->instead_of, ElementsAre("axis.quadratic@s2.z"));
   EXPECT_THAT(law_text(law, {}, "run.csv"),
               HasSubstr("A formula for everything, instead of axis.quadratic@s2.z"));
-  EXPECT_EQ(law_json(law, {}, "run.csv")["instead_of"], nlohmann::json({"axis.quadratic@s2.z"}));
+  EXPECT_EQ(law_json(law, {}, "run.csv")["instead_of"], nlohmann::json::array({"axis.quadratic@s2.z"}));
 }
 
 TEST(RemainingLaw, BesideTheEffectsWhereAFormulaAloneLeavesSomething) {
