@@ -90,6 +90,11 @@ Eigen::MatrixXd apart(const Eigen::VectorXd& rows, Eigen::Index poses) {
 
 }  // namespace
 
+const Eigen::MatrixXd& ChannelSums::Model::before_of(int c, int d) const {
+  const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
+  return before[low][high - low];
+}
+
 Eigen::MatrixXd ChannelSums::Model::on_channel(int c, const Eigen::MatrixXd& X) const {
   const Eigen::Index block = projection->whitener().pose_rows(), poses = rows.rows() / block;
   Eigen::MatrixXd out(poses, X.cols());
@@ -157,8 +162,7 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
 }
 
 Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::MatrixXd& g) const {
-  const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
-  const Eigen::MatrixXd& h = model_->before[low][high - low];
+  const Eigen::MatrixXd& h = model_->before_of(c, d);
   if (!correlated_) return h.col(0).asDiagonal() * g;
   if (c > d) return linear::transposed_product(h, g);
   Eigen::MatrixXd out(h.rows(), g.cols());
@@ -185,8 +189,7 @@ Eigen::MatrixXd ChannelSums::taken_up_by_laws(int c, const Eigen::MatrixXd& g) c
 }
 
 Eigen::MatrixXd ChannelSums::products(int c, int d) const {
-  const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
-  const Eigen::MatrixXd& h = model_->before[low][high - low];
+  const Eigen::MatrixXd& h = model_->before_of(c, d);
   Eigen::MatrixXd out =
       linear::transposed_product(-taken_[static_cast<std::size_t>(c)], taken_[static_cast<std::size_t>(d)]);
   if (!correlated_) {
@@ -269,7 +272,7 @@ Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
 
 ChannelSums::Moments ChannelSums::moments(int channel) const {
   const auto c = static_cast<std::size_t>(channel);
-  const Eigen::MatrixXd& h = model_->before[c].front();
+  const Eigen::MatrixXd& h = model_->before_of(channel, channel);
   const Eigen::MatrixXd& U = taken_[c];
   if (correlated_) {
     const Eigen::MatrixXd G = products(channel, channel);

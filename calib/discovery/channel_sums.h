@@ -117,6 +117,8 @@ class ChannelSums {
     int channels;
     std::vector<std::vector<Eigen::MatrixXd>> before;  ///< h_cd, d >= c: poses x 1 or poses x poses
 
+    /// h_cd, or h_dc where d < c.
+    [[nodiscard]] const Eigen::MatrixXd& before_of(int c, int d) const;
     /// E_c' X, X rows as in LinearRows.
     [[nodiscard]] Eigen::MatrixXd on_channel(int c, const Eigen::MatrixXd& X) const;
     /// E_c' W' X of every channel, X as the whitener gives rows.

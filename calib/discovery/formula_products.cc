@@ -3,15 +3,14 @@
 
 namespace mgtd::calib::discovery {
 
-FormulaProducts::FormulaProducts(const FormulaValues& values, const ChannelSums& sums)
-    : values_(&values), channels_(sums.channels()) {
+FormulaProducts::FormulaProducts(const FormulaValues& values, const ChannelSums& sums) : values_(&values) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
   std::vector<Eigen::MatrixXd> taken_up;
   for (int c = 0; c < sums.total(); ++c) {
     const Eigen::VectorXd of_channel = sums.before_projection(c, c, one);
-    by_one_.emplace_back(of_channel.transpose() * on(c));
+    by_one_.emplace_back(of_channel.transpose() * values.on(c));
     of_one_.push_back(of_channel.sum());
-    taken_up.push_back(sums.taken_up_by_model(c, on(c)));
+    taken_up.push_back(sums.taken_up_by_model(c, values.on(c)));
   }
   mark(sums);
   for (int a = 0; a < sums.total(); ++a)
@@ -55,7 +54,7 @@ void FormulaProducts::fill(const ChannelSums& sums, const std::vector<Eigen::Mat
     Eigen::Index at = 0;
     for (std::size_t i = from; i < to; ++i) {
       if (pair.at[i] < 0) continue;
-      some.middleCols(at, members[i].count) = on(b).middleCols(members[i].first, members[i].count);
+      some.middleCols(at, members[i].count) = values_->on(b).middleCols(members[i].first, members[i].count);
       at += members[i].count;
     }
     some = sums.before_projection(a, b, some);
@@ -70,7 +69,7 @@ void FormulaProducts::fill(const ChannelSums& sums, const std::vector<Eigen::Mat
       Eigen::Map<Eigen::MatrixXd> before(data, count, count), left(data + size, count, count);
       for (Eigen::Index j = 0; j < count; ++j) {
         for (Eigen::Index k = 0; k < count; ++k) {
-          before(k, j) = on(a).col(first + k).dot(some.col(at + j));
+          before(k, j) = values_->on(a).col(first + k).dot(some.col(at + j));
           left(k, j) = before(k, j) - taken_a.col(first + k).dot(taken_b.col(first + j));
         }
       }

@@ -39,14 +39,10 @@ class FormulaProducts {
   [[nodiscard]] std::size_t index(int a, int b) const {
     return static_cast<std::size_t>(a) * by_one_.size() + static_cast<std::size_t>(b);
   }
-  [[nodiscard]] const Eigen::MatrixXd& on(int channel) const {
-    return values_->on(channel < channels_ ? channel : 0);
-  }
   void mark(const ChannelSums& sums);
   void fill(const ChannelSums& sums, const std::vector<Eigen::MatrixXd>& taken_up, int a, int b);
 
   const FormulaValues* values_;
-  int channels_;
   std::vector<Eigen::RowVectorXd> by_one_;
   std::vector<double> of_one_;
   std::vector<Pair> pairs_;

@@ -19,8 +19,11 @@ class FormulaValues {
     Eigen::Index first{0}, count{0};  ///< columns
   };
   [[nodiscard]] const std::vector<Member>& members() const { return members_; }
+  /// On a channel of ChannelSums. A component of the gradient has the values of the first channel: only
+  /// formulas that are the same on all act there.
   [[nodiscard]] const Eigen::MatrixXd& on(int channel) const {
-    return columns_[static_cast<std::size_t>(channel)];
+    const auto c = static_cast<std::size_t>(channel);
+    return columns_[c < columns_.size() ? c : 0];
   }
   [[nodiscard]] const Grammar& grammar() const { return *grammar_; }
   /// The same at some of the poses.

@@ -26,8 +26,9 @@ struct Workbench {
   const fit::joint::JointProblem& problem;
   const criticism::tests::Residual& residual;
   criticism::tests::NoiseReference noise;
-  std::vector<criticism::tests::ScoredFamily> library{};  ///< scored on it, where nothing else is said
-  int looks{1};                                           ///< DiscoverOptions
+  std::vector<criticism::tests::ScoredFamily>
+      library{};  ///< scored on the residual, where nothing else is said
+  int looks{1};   ///< DiscoverOptions
 };
 
 /// What the search of one residual says.

@@ -16,7 +16,7 @@ LawSearch::LawSearch(const FormulaProducts& products, const ChannelSums& sums)
 
 LawSearch::OnChannel LawSearch::on_channel(const FormulaProducts& products, int c) const {
   OnChannel out{.basis = std::vector<Eigen::MatrixXd>(values_.members().size()),
-                .by_laws = sums_.taken_up_by_laws(c, values_on(c))};
+                .by_laws = sums_.taken_up_by_laws(c, values_.on(c))};
   for (std::size_t i = 0; i < values_.members().size(); ++i)
     if (products.have(i, c, c)) out.basis[i] = basis_on(products, i, c, out.by_laws);
   return out;
@@ -81,7 +81,7 @@ LawSearch::Wide LawSearch::wide(const FormulaProducts& products, const Place& pl
 
 std::vector<Tried> LawSearch::scores() const {
   std::vector<Eigen::RowVectorXd> by_column;
-  for (int c = 0; c < sums_.total(); ++c) by_column.emplace_back(sums_.score(c).transpose() * values_on(c));
+  for (int c = 0; c < sums_.total(); ++c) by_column.emplace_back(sums_.score(c).transpose() * values_.on(c));
   const auto& members = values_.members();
   const auto unit_scores = [&](int c, std::size_t i) -> Eigen::RowVectorXd {
     const auto channel = static_cast<std::size_t>(c);
@@ -117,7 +117,7 @@ std::vector<Eigen::MatrixXf> LawSearch::unit_columns() const {
   const auto& members = values_.members();
   std::vector<Eigen::MatrixXf> out;
   for (int c = 0; c < sums_.total(); ++c) {
-    const Eigen::MatrixXd& G = values_on(c);
+    const Eigen::MatrixXd& G = values_.on(c);
     const OnChannel& channel = channels_[static_cast<std::size_t>(c)];
     Eigen::MatrixXf columns = Eigen::MatrixXf::Zero(G.rows(), G.cols());
     for (std::size_t i = 0; i < members.size(); ++i)

@@ -66,10 +66,6 @@ class LawSearch {
   [[nodiscard]] Eigen::MatrixXd basis_on(const FormulaProducts& products, std::size_t member, int channel,
                                          const Eigen::MatrixXd& by_laws) const;
   [[nodiscard]] Wide wide(const FormulaProducts& products, const Place& place) const;
-  [[nodiscard]] const Eigen::MatrixXd& values_on(int channel) const {
-    return values_.on(channel < sums_.channels() ? channel : 0);
-  }
-
   const FormulaValues& values_;
   const ChannelSums& sums_;
   std::vector<OnChannel> channels_;
