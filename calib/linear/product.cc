@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <mutex>
 
+#include "calib/linear/blas_kernels.h"
+
 namespace mgtd::calib::linear {
 namespace {
 
 /// A run is judged beside the acquisition, and its digits must not depend on the number of processors.
-[[maybe_unused]] const bool kOneThread = (openblas_set_num_threads(1), true);
+[[maybe_unused]] const bool kReady = (take_fitting_kernels(), openblas_set_num_threads(1), true);
 
 /// The library without threads of its own hands out its buffers without a lock: two threads that call it at
 /// once may be given the same one.
@@ -60,6 +62,11 @@ Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
 }
 
 void set_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
+  constexpr Eigen::Index kSmall = 64;  // to arrange such an A for BLAS takes longer than the product
+  if (A.size() <= kSmall) {
+    C = A.lazyProduct(B);
+    return;
+  }
   const Turn turn(one_at_a_time);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
