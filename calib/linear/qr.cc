@@ -47,8 +47,21 @@ Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X) {
   return Q.rightCols(X.rows() - qr.rank());
 }
 
-Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X) {
-  return Eigen::MatrixXd(Plain(X).householderQ()).transpose();
+struct TriangularisingRotation::Work {
+  Plain qr;
+  Eigen::MatrixXd Q, rotation;
+  Eigen::VectorXd row;
+};
+
+TriangularisingRotation::TriangularisingRotation() : work_(std::make_unique<Work>()) {}
+TriangularisingRotation::~TriangularisingRotation() = default;
+
+const Eigen::MatrixXd& TriangularisingRotation::of(const Eigen::Ref<const Eigen::MatrixXd>& X) {
+  work_->qr.compute(X);
+  work_->row.resize(X.rows());
+  work_->qr.householderQ().evalTo(work_->Q, work_->row);
+  work_->rotation = work_->Q.transpose();
+  return work_->rotation;
 }
 
 }  // namespace mgtd::calib::linear

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 /// Least squares and orthonormal bases of columns, by Householder QR.
@@ -24,7 +25,20 @@ namespace mgtd::calib::linear {
 /// Orthonormal basis of what is perpendicular to all columns.
 [[nodiscard]] Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X);
 /// Q' of X = Q R, square: the first rows of Q' X, as many as X has columns, hold the triangle R, the others
-/// are zero.
-[[nodiscard]] Eigen::MatrixXd triangularising_rotation(const Eigen::MatrixXd& X);
+/// are zero. For many small X of one size, one after the other: allocates for the first alone.
+class TriangularisingRotation {
+ public:
+  TriangularisingRotation();
+  ~TriangularisingRotation();
+  TriangularisingRotation(const TriangularisingRotation&) = delete;
+  TriangularisingRotation& operator=(const TriangularisingRotation&) = delete;
+
+  /// Holds until the next call.
+  [[nodiscard]] const Eigen::MatrixXd& of(const Eigen::Ref<const Eigen::MatrixXd>& X);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
 
 }  // namespace mgtd::calib::linear

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "calib/linear/product.h"
 #include "calib/linear/qr.h"
@@ -45,36 +46,49 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
       steps_(order_.size()) {
   for (int c = 0; c < nT_per_sqrt_h.size(); ++c)
     if (nT_per_sqrt_h[c] > 0) walking_.push_back(c);
-  const auto W = static_cast<Eigen::Index>(walking_.size()), U = unknowns();
+  const Eigen::Index W = walks(), U = unknowns();
   const double fresh = 1 / std::sqrt(1 - rho * rho);
-  /// What the readings of a pose, each times a factor, feel of its unknowns.
+  /// What the rows of a pose, its readings times a factor, feel of the walks and of its nuisances.
   const auto felt = [&](Eigen::Index pose, const Eigen::VectorXd& factor) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(channels_, U);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(pose_rows_, W + fit::joint::kNuisances);
     for (Eigen::Index i = 0; i < W; ++i) {
       const int c = walking_[static_cast<std::size_t>(i)];
       out(c, i) = factor[c] * problem.poses[static_cast<std::size_t>(pose)].weight[c];
     }
-    out.rightCols<fit::joint::kNuisances>() =
-        factor.asDiagonal() * nuisance.middleRows(pose * pose_rows_, channels_);
+    out.rightCols<fit::joint::kNuisances>() = nuisance.middleRows(pose * pose_rows_, pose_rows_);
+    out.topRightCorner(channels_, fit::joint::kNuisances).array().colwise() *= factor.array();
     return out;
   };
+  linear::TriangularisingRotation of_nuisances, of_last, of_left;
   Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     Step& step = steps_[k];
     const auto& pose = problem.poses[static_cast<std::size_t>(order_[k])];
-    step.now.setOnes(channels_);
-    step.before.setZero(channels_);
-    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + channels_, U), mine = last;
+    // Readings, scalar reference, and what stands in the place of the attitude, less the pose's own unknowns.
+    rank_ +=
+        static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + pose.beside();
+    Eigen::VectorXd now = Eigen::VectorXd::Ones(channels_), before = Eigen::VectorXd::Zero(channels_);
+    const auto* previous = k > 0 ? &problem.poses[static_cast<std::size_t>(order_[k - 1])] : nullptr;
+    if (previous != nullptr && remembers()) {
+      const auto both = (pose.weight.array() > 0 && previous->weight.array() > 0).cast<double>();
+      now = 1 + both * (fresh - 1);
+      before = -rho * fresh * both;
+    }
+    Eigen::MatrixXd own = felt(order_[k], now);
+    if (!remembers()) {
+      const auto nuisances = own.rightCols<fit::joint::kNuisances>();
+      const Eigen::MatrixXd& turn = of_nuisances.of(nuisances);
+      log_det_ += log_det_of(turn.topRows(fit::joint::kNuisances) * nuisances);
+      step.alone = turn.bottomRows(own_rows());
+      own = step.alone * own.leftCols(W);
+    }
+    if (remembers()) step.now = std::move(now), step.before = before;
+    if (U == 0) continue;
+    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + coupled(), U), mine = last;
     last.topRows(U) = carried;
-    if (k > 0) {
-      const auto& previous = problem.poses[static_cast<std::size_t>(order_[k - 1])];
-      if (rho != 0) {
-        const auto both = (pose.weight.array() > 0 && previous.weight.array() > 0).cast<double>();
-        step.now = 1 + both * (fresh - 1);
-        step.before = -rho * fresh * both;
-        last.bottomRows(channels_) = felt(order_[k - 1], step.before);
-      }
-      const double root_h = std::sqrt(std::max(0.0, pose.t_h - previous.t_h));
+    if (previous != nullptr) {
+      if (remembers()) last.bottomRows(channels_) = felt(order_[k - 1], before).topRows(channels_);
+      const double root_h = std::sqrt(std::max(0.0, pose.t_h - previous->t_h));
       for (Eigen::Index i = 0; i < W; ++i) {
         const double step_nT = nT_per_sqrt_h[walking_[static_cast<std::size_t>(i)]] * root_h;
         mine(U + i, i) = 1 / std::max(step_nT, kLeastStep_nT);
@@ -84,21 +98,16 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
     } else {
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
-    mine.bottomRows(channels_) = felt(order_[k], step.now);
-    const bool alone = rho == 0 && W == 0;  // what is carried over is a triangle already
-    if (!alone) step.first = linear::triangularising_rotation(last);
-    if (k > 0) log_det_ += log_det_of(alone ? last : step.first * last);
-    const Eigen::Index others = pose_rows_ - channels_;
-    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(W + pose_rows_, U);
-    left.topRows(W + channels_) = (alone ? mine : step.first * mine).bottomRows(W + channels_);
-    left.bottomRightCorner(others, fit::joint::kNuisances) =
-        nuisance.middleRows(order_[k] * pose_rows_ + channels_, others);
-    step.second = linear::triangularising_rotation(left);
+    mine.bottomRows(coupled()) = own.topRows(coupled());
+    const Eigen::MatrixXd& turn = of_last.of(last);
+    if (previous != nullptr) log_det_ += log_det_of(turn * last);
+    step.first.resize(W + coupled(), U + coupled());
+    step.first << turn.bottomLeftCorner(W + coupled(), U), turn.bottomRightCorner(W + coupled(), coupled());
+    Eigen::MatrixXd left(W + own_rows(), U);
+    left << turn.bottomRows(W + coupled()) * mine, own.bottomRows(own_rows() - coupled());
+    step.second = of_left.of(left);
     carried = (step.second * left).topRows(U);
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
-    // Readings, scalar reference, and what stands in the place of the attitude, less the pose's own unknowns.
-    rank_ +=
-        static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + pose.beside();
   }
 }
 
@@ -129,26 +138,29 @@ void Whitener::apply(const RowSource& rows, Eigen::Ref<Eigen::MatrixXd> out) con
 }
 
 Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
-  const Eigen::Index n = X.cols(), U = unknowns(), W = U - fit::joint::kNuisances;
-  const Eigen::Index others = pose_rows_ - channels_, left_rows = rows_per_pose();
+  const Eigen::Index n = X.cols(), U = unknowns(), W = walks(), others = own_rows() - coupled(),
+                     left_rows = rows_per_pose();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(order_.size()) * pose_rows_, n);
-  Eigen::MatrixXd emitted = Eigen::MatrixXd::Zero(W + pose_rows_, n), left(W + pose_rows_, n);
-  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(U + W + channels_, n), in = turned;
+  Eigen::MatrixXd emitted = Eigen::MatrixXd::Zero(W + own_rows(), n), left(W + own_rows(), n);
+  Eigen::MatrixXd in = Eigen::MatrixXd::Zero(U + coupled(), n);
   for (std::size_t k = order_.size(); k-- > 0;) {
     const Step& step = steps_[k];
     const Eigen::Index row = order_[k] * pose_rows_;
     emitted.topRows(U) = in.topRows(U);  // what the pose handed on
     emitted.bottomRows(left_rows) = X.middleRows(order_[k] * left_rows, left_rows);
-    left.noalias() = step.second.transpose() * emitted;
-    turned.bottomRows(W + channels_) = left.topRows(W + channels_);
-    if (step.first.size() == 0) {
-      in = turned;
+    if (U > 0) {
+      left.noalias() = step.second.transpose() * emitted;
+      in.noalias() = step.first.transpose() * left.topRows(W + coupled());
     } else {
-      in.noalias() = step.first.transpose() * turned;
+      left = emitted;
+    }
+    if (!remembers()) {
+      out.middleRows(row, pose_rows_).noalias() = step.alone.transpose() * left.bottomRows(others);
+      continue;
     }
     out.middleRows(row, channels_) += step.now.asDiagonal() * in.bottomRows(channels_);
     out.middleRows(row + channels_, others) = left.bottomRows(others);
-    if (k > 0 && rho_ != 0)
+    if (k > 0)
       out.middleRows(order_[k - 1] * pose_rows_, channels_) +=
           step.before.asDiagonal() * in.bottomRows(channels_);
   }
@@ -156,34 +168,35 @@ Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
 }
 
 Whitener::Walk::Walk(const Whitener& whitener, Eigen::Index columns) : whitener_(whitener) {
-  const Eigen::Index U = whitener.unknowns(), W = U - fit::joint::kNuisances;
-  in_ = Eigen::MatrixXd::Zero(U + W + whitener.channels_, columns);
-  turned_.resize(W + whitener.channels_, columns);
-  left_.resize(W + whitener.pose_rows_, columns);
+  const Eigen::Index U = whitener.unknowns(), W = whitener.walks(), coupled = whitener.coupled();
+  in_ = Eigen::MatrixXd::Zero(U + coupled, columns);
+  turned_.resize(W + coupled, columns);
+  own_.resize(whitener.own_rows(), columns);
+  left_.resize(W + whitener.own_rows(), columns);
   emitted_.resize(left_.rows(), columns);
 }
 
 void Whitener::Walk::next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Ref<Eigen::MatrixXd> out) {
   const Step& step = whitener_.steps_[at_];
-  const Eigen::Index U = whitener_.unknowns(), W = U - fit::joint::kNuisances;
-  const Eigen::Index channels = whitener_.channels_, others = whitener_.pose_rows_ - channels;
-  in_.middleRows(U, W).setZero();
-  in_.bottomRows(channels) = step.now.asDiagonal() * rows.topRows(channels);
-  if (whitener_.rho_ != 0) {
-    if (at_ > 0) in_.bottomRows(channels) += step.before.asDiagonal() * before_;
-    before_ = rows.topRows(channels);
-  }
-  if (step.first.size() == 0) {
-    left_.topRows(channels) = in_.bottomRows(channels);
+  const Eigen::Index U = whitener_.unknowns(), coupled = whitener_.coupled();
+  if (whitener_.remembers()) {
+    in_.bottomRows(coupled) = step.now.asDiagonal() * rows.topRows(coupled);
+    if (at_ > 0) in_.bottomRows(coupled) += step.before.asDiagonal() * before_;
+    before_ = rows.topRows(coupled);
+    own_.bottomRows(own_.rows() - coupled) = rows.bottomRows(own_.rows() - coupled);
   } else {
-    linear::set_product(step.first.bottomRows(W + channels), in_, turned_);
-    left_.topRows(W + channels) = turned_;
+    linear::set_product(step.alone, rows, own_);
   }
-  left_.bottomRows(others) = rows.bottomRows(others);
+  ++at_;
+  if (U == 0) {
+    out = own_;
+    return;
+  }
+  linear::set_product(step.first, in_, turned_);
+  left_ << turned_, own_.bottomRows(own_.rows() - coupled);
   linear::set_product(step.second, left_, emitted_);
   in_.topRows(U) = emitted_.topRows(U);
   out = emitted_.bottomRows(out.rows());
-  ++at_;
 }
 
 }  // namespace mgtd::calib::criticism::tests

@@ -11,9 +11,10 @@
 /// Model of the readings' noise: of each channel first-order autoregressive over the poses in the order of
 /// time, n_k = rho n_(k-1) + sqrt(1 - rho^2) e_k; scalar and attitude are independent. Rows of pose k less
 /// rho times those of the pose before have independent noise; a sequence of orthogonal transformations then
-/// removes the nuisances, pose by pose (a banded QR). What is left are as many rows a pose as it
-/// has readings, with unit independent noise, equivalent to marginalising C_k = Sigma_k + N_k Lambda N_k'
-/// exactly, for any rho. A channel whose reading was left out starts its memory anew.
+/// removes the nuisances, pose by pose (a banded QR). Where rho is zero the nuisances of a pose are in no
+/// other's rows and go first. What is left are rows_per_pose() rows for each pose, with unit independent
+/// noise, equivalent to marginalising C_k = Sigma_k + N_k Lambda N_k' exactly, for any rho. A channel whose
+/// reading was left out starts its memory anew.
 ///
 /// Beside it an offset may wander (wandering.h): o_k = o_(k-1) + a sqrt(t_k - t_(k-1)) e_k. Its value at each
 /// pose is one more unknown, and each step a row of its own; both are removed in the same way, exactly.
@@ -25,8 +26,7 @@ class Whitener {
   Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixXd& nuisance, double rho,
            const fit::joint::WanderingRates& nT_per_sqrt_h = {});
 
-  /// Rows as in LinearRows in; out, a block for each pose of the problem, with as many rows as it has
-  /// readings.
+  /// Rows as in LinearRows in; out, a block of rows_per_pose() for each pose of the problem.
   [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& rows) const;
   void apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> out) const;
   /// Asks for the rows of a few poses at a time.
@@ -46,7 +46,7 @@ class Whitener {
    private:
     const Whitener& whitener_;
     std::size_t at_{0};
-    Eigen::MatrixXd in_, turned_, left_, emitted_;
+    Eigen::MatrixXd own_, in_, turned_, left_, emitted_;
     Eigen::MatrixXd before_;  ///< readings' rows of the last pose
   };
 
@@ -54,7 +54,8 @@ class Whitener {
   [[nodiscard]] Eigen::Index channels() const { return channels_; }
   /// Of what apply() takes.
   [[nodiscard]] Eigen::Index pose_rows() const { return pose_rows_; }
-  /// Of what apply() gives: one for each reading, and one more where the field is known as a vector.
+  /// Of what apply() gives: one for each reading, and one more where the field is known as a vector, or two
+  /// less where no attitude is known.
   [[nodiscard]] Eigen::Index rows_per_pose() const { return pose_rows_ - fit::joint::kNuisances; }
   /// ln of the determinant of the covariance of the readings, less that of their weights.
   [[nodiscard]] double log_det() const { return log_det_; }
@@ -65,16 +66,23 @@ class Whitener {
   [[nodiscard]] const std::vector<Eigen::Index>& order() const { return order_; }
 
  private:
-  /// Unknowns of a pose: offsets that wander, then its nuisances.
-  [[nodiscard]] Eigen::Index unknowns() const {
-    return static_cast<Eigen::Index>(walking_.size()) + fit::joint::kNuisances;
-  }
+  [[nodiscard]] bool remembers() const { return rho_ != 0; }
+  [[nodiscard]] Eigen::Index walks() const { return static_cast<Eigen::Index>(walking_.size()); }
+  /// Unknowns of a pose that occur in its neighbours' rows, too: offsets that wander, and also its nuisances
+  /// where the noise has a memory.
+  [[nodiscard]] Eigen::Index unknowns() const { return walks() + (remembers() ? fit::joint::kNuisances : 0); }
+  /// Rows of a pose in which unknowns of the pose before occur.
+  [[nodiscard]] Eigen::Index coupled() const { return remembers() ? channels_ : 0; }
+  /// Rows of a pose after the nuisances that are its alone are taken out.
+  [[nodiscard]] Eigen::Index own_rows() const { return remembers() ? pose_rows_ : rows_per_pose(); }
   struct Step {
-    Eigen::VectorXd now, before;  ///< factors of this pose's readings and the last one's
-    /// Rows carried over, steps of the walks and readings: takes out the unknowns of the pose before. Empty
-    /// where poses do not depend on each other.
+    Eigen::MatrixXd alone;        ///< takes out the nuisances of the pose; empty where the noise has a memory
+    Eigen::VectorXd now, before;  ///< with a memory: factors of this pose's readings and the last one's
+    /// Takes out the unknowns of the pose before. Columns: what is handed on, then the coupled rows; those of
+    /// the walks' steps are left out, because their data are zero. Empty where poses do not depend on each
+    /// other, as is `second`.
     Eigen::MatrixXd first;
-    /// What is left, and scalar and attitude: takes out this pose's own.
+    /// What is left, and the other rows: takes out this pose's own.
     Eigen::MatrixXd second;
   };
   double rho_;

@@ -121,8 +121,11 @@ struct JointProblem {
   [[nodiscard]] int site_unknowns() const;
   /// Rows of a pose in the linearised fit: its readings, the scalar reference, the attitude; with a vector
   /// reference in the platform frame that in the place of the attitude, and one row more for the idle slot;
-  /// with one beside the table one row more for its size.
-  [[nodiscard]] int pose_rows() const { return channels() + kNuisances + (has_reference ? 1 : 0); }
+  /// with one beside the table one row more for its size. Where no pose knows its attitude, the idle slot
+  /// alone stands in its place.
+  [[nodiscard]] int pose_rows() const {
+    return channels() + 1 + (has_angles || has_reference ? 3 : 1) + (has_reference ? 1 : 0);
+  }
   [[nodiscard]] int fixed() const { return slots().effects() + coefficients(); }
 };
 

@@ -49,11 +49,24 @@ TEST(Bases, ColumnsThatAreRoundingAgainstTheirLengthAreLeftOut) {
 }
 
 TEST(TriangularisingRotation, LeavesNothingBelowTheTriangle) {
-  const Eigen::MatrixXd T = triangularising_rotation(kLine) * kLine;
+  TriangularisingRotation rotation;
+  const Eigen::MatrixXd T = rotation.of(kLine) * kLine;
   ASSERT_EQ(T.rows(), 4);
   EXPECT_NEAR(T.col(0).squaredNorm(), 4, 1e-13);
   EXPECT_NEAR(T(1, 0), 0, 1e-14);
   EXPECT_TRUE(T.bottomRows(2).isZero(1e-14)) << T;
+}
+
+/// What one matrix left in the workspace must not show in the next, of the same size or another.
+TEST(TriangularisingRotation, IsThatOfEachMatrixAndARotation) {
+  TriangularisingRotation rotation;
+  const Eigen::MatrixXd wide{{2, 1, 0}, {1, 3, 1}, {0, 1, 4}, {1, 1, 1}};
+  for (const Eigen::MatrixXd& X : {kLine, wide, Eigen::MatrixXd(3 * kLine.array() + 1), wide}) {
+    const Eigen::MatrixXd Q = rotation.of(X);
+    EXPECT_TRUE((Q * Q.transpose()).isIdentity(1e-13));
+    EXPECT_TRUE((Q * X).bottomRows(X.rows() - X.cols()).isZero(1e-13));
+    EXPECT_EQ(Q, TriangularisingRotation().of(X));
+  }
 }
 
 }  // namespace
