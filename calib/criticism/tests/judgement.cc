@@ -197,9 +197,10 @@ std::optional<Against> beside_larger_noise(const fit::joint::JointFit& stated, c
 
 /// The tests against a walk, and where it needs to be beside larger noise.
 Criticism judged_against_walk(const fit::joint::JointFit& stated, const fit::joint::WanderingEstimate& found,
+                              const fit::joint::WanderingRates& at_white,
                               const CandidateEffects& candidate_effects, std::uint64_t seed,
                               const Rates& before) {
-  Against against{stated, beside_white(stated, found.size)};
+  Against against{stated, at_white};
   const auto tests = [&](const fit::joint::WanderingRates& rates) {
     Criticism out = criticise_against_walk(against.fit, rates, candidate_effects, seed, &before);
     if (!out.rejects_named()) look_at_maps(out);
@@ -262,22 +263,25 @@ Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candida
   const fit::joint::JointFit stated = at_stated_weights(judged);
   // A few slow terms do not tell a law from a walk that is far above the noise: a law then has to make it
   // vanish, or the tests stand against the walk as it was found without any law.
-  const auto mild = [&](const fit::joint::WanderingEstimate& w) {
-    return step_over_noise(stated, beside_white(stated, w.size)) < kMild;
+  const auto mild = [&](const fit::joint::WanderingRates& rates) {
+    return step_over_noise(stated, rates) < kMild;
   };
   ask(*alternative, out.criticism, walk);
-  if (walk.passed && (!walk.beside.any() || mild(walk.beside))) {
+  fit::joint::WanderingRates rates;  // of `found`
+  if (walk.passed && walk.beside.any()) rates = beside_white(stated, walk.beside.size);
+  if (walk.passed && (!walk.beside.any() || mild(rates))) {
     found = std::move(walk.beside);
-  } else if (walk.passed || !mild(found)) {
-    walk = {};
+  } else {
+    rates = beside_white(stated, found.size);
+    if (walk.passed || !mild(rates)) walk = {};
   }
   if (!found.any()) return out;
   const bool asked = !walk.log10_p.empty();
   if (auto covariance = fit::joint::covariance_with_wandering(out.fit, found))
     out.fit.covariance = *std::move(covariance);
-  const Rates rates = std::move(out.criticism.rates);
+  const Rates before_walk = std::move(out.criticism.rates);
   const double chi2 = out.criticism.chi2;
-  out.criticism = judged_against_walk(stated, found, candidate_effects, seed, rates);
+  out.criticism = judged_against_walk(stated, found, rates, candidate_effects, seed, before_walk);
   out.criticism.chi2 = chi2;
   if (asked) ask(*alternative, out.criticism, walk);
   hold_against(walk, out.criticism);

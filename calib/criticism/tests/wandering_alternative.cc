@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calib/linear/qr.h"
 
@@ -17,7 +18,11 @@ constexpr double kAbsorbedShare = 1e-6;
 RowSource slow_source(const fit::joint::JointProblem& problem) {
   const fit::joint::WanderingTerms terms = fit::joint::wandering_terms(problem);
   RowSource out{.columns = terms.any() ? problem.channels() * fit::joint::kWanderingTerms : 0};
-  out.of = [&problem, terms, columns = out.columns](std::span<const Eigen::Index> poses) {
+  Eigen::Matrix<double, fit::joint::kWanderingTerms, Eigen::Dynamic> at(
+      fit::joint::kWanderingTerms, out.columns > 0 ? static_cast<Eigen::Index>(problem.poses.size()) : 0);
+  for (Eigen::Index k = 0; k < at.cols(); ++k)
+    at.col(k) = terms.at(problem.poses[static_cast<std::size_t>(k)].t_h);
+  out.of = [&problem, at = std::move(at), columns = out.columns](std::span<const Eigen::Index> poses) {
     const Eigen::Index block = problem.pose_rows();
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()) * block, columns);
     Eigen::Index row = 0;
@@ -25,7 +30,7 @@ RowSource slow_source(const fit::joint::JointProblem& problem) {
       const fit::joint::JointPose& pose = problem.poses[static_cast<std::size_t>(k)];
       for (int c = 0; columns > 0 && c < problem.channels(); ++c) {
         rows.block<1, fit::joint::kWanderingTerms>(row + c, c * fit::joint::kWanderingTerms) =
-            pose.weight[c] * terms.at(pose.t_h).transpose();
+            pose.weight[c] * at.col(k).transpose();
       }
       row += block;
     }
