@@ -79,20 +79,24 @@ Eigen::MatrixXd unit_rows(const fit::joint::JointProblem& problem, const fit::jo
   return out;
 }
 
-/// A column of its own for each pose.
-Eigen::MatrixXd apart(const Eigen::VectorXd& rows, Eigen::Index poses) {
-  const Eigen::Index block = rows.size() / poses;
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.size(), poses);
-  for (Eigen::Index k = 0; k < poses; ++k)
-    out.col(k).segment(k * block, block) = rows.segment(k * block, block);
-  return out;
-}
-
 }  // namespace
 
-const Eigen::MatrixXd& ChannelSums::Model::before_of(int c, int d) const {
+const Eigen::VectorXd& ChannelSums::Model::before_of(int c, int d) const {
   const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
   return before[low][high - low];
+}
+
+Eigen::MatrixXd ChannelSums::Model::spread(int c, const Eigen::MatrixXd& g) const {
+  const Eigen::Index block = projection->whitener().pose_rows();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.rows(), g.cols());
+  for (Eigen::Index k = 0; k < g.rows(); ++k) {
+    if (c < channels) {
+      out.row(k * block + c) = rows(k * block + c, c) * g.row(k);
+    } else {
+      out.middleRows(k * block, block).noalias() = rows.col(c).segment(k * block, block) * g.row(k);
+    }
+  }
+  return out;
 }
 
 Eigen::MatrixXd ChannelSums::Model::on_channel(int c, const Eigen::MatrixXd& X) const {
@@ -119,23 +123,14 @@ Scores ChannelSums::Model::by_channel(const Eigen::MatrixXd& X) const {
 void ChannelSums::Model::set_before() {
   const tests::Whitener& whitener = projection->whitener();
   const Eigen::Index poses = rows.rows() / whitener.pose_rows();
-  const auto total = static_cast<int>(rows.cols());
-  before.resize(static_cast<std::size_t>(total));
-  if (whitener.rho() == 0 && !whitener.wanders()) {
-    const Eigen::MatrixXd white = whitener.apply(rows) / unit;
-    for (int c = 0; c < total; ++c) {
-      for (int d = c; d < total; ++d) {
-        const Eigen::VectorXd products = white.col(c).cwiseProduct(white.col(d));
-        before[static_cast<std::size_t>(c)].emplace_back(
-            products.reshaped(whitener.rows_per_pose(), poses).colwise().sum().transpose());
-      }
+  const Eigen::MatrixXd white = whitener.apply(rows) / unit;
+  before.resize(static_cast<std::size_t>(rows.cols()));
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+    for (Eigen::Index d = c; d < rows.cols(); ++d) {
+      const Eigen::VectorXd products = white.col(c).cwiseProduct(white.col(d));
+      before[static_cast<std::size_t>(c)].emplace_back(
+          products.reshaped(whitener.rows_per_pose(), poses).colwise().sum().transpose());
     }
-    return;
-  }
-  for (int d = 0; d < total; ++d) {
-    const Eigen::MatrixXd back =
-        whitener.apply_transposed(whitener.apply(apart(rows.col(d), poses))) / (unit * unit);
-    for (int c = 0; c <= d; ++c) before[static_cast<std::size_t>(c)].push_back(on_channel(c, back));
   }
 }
 
@@ -148,9 +143,10 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
               .unit = residual.unit(),
               .rows = unit_rows(fit.problem, fit.state),
               .channels = channels_,
-              .before = {}};
+              .before = {},
+              .of_one = {}};
   total_ = static_cast<int>(model.rows.cols());
-  model.set_before();
+  if (!correlated_) model.set_before();
   const Eigen::Index n = poses_ * residual.rows_per_pose(), p = residual.basis().cols();
   Eigen::MatrixXd both(n, p + 1);
   both << residual.basis().topRows(n), residual.value().head(n);
@@ -158,15 +154,46 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
     taken_.emplace_back(on_channel.leftCols(p).transpose());
     scores_.emplace_back(on_channel.col(p));
   }
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(poses_);
+  for (int c = 0; c < total_; ++c) {
+    if (!correlated_) {
+      model.of_one.push_back(model.before_of(c, c));
+      continue;
+    }
+    const Eigen::MatrixXd white = model.projection->whitener().apply(model.spread(c, one)) / model.unit;
+    model.of_one.emplace_back(
+        model.on_channel(c, model.projection->whitener().apply_transposed(white)).col(0) / model.unit);
+  }
   model_ = std::make_shared<const Model>(std::move(model));
 }
 
+Eigen::MatrixXd ChannelSums::whitened(int c, const Eigen::MatrixXd& g) const {
+  return model_->projection->whitener().apply(model_->spread(c, g)) / model_->unit;
+}
+
 Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::MatrixXd& g) const {
-  const Eigen::MatrixXd& h = model_->before_of(c, d);
-  if (!correlated_) return h.col(0).asDiagonal() * g;
-  if (c > d) return linear::transposed_product(h, g);
-  Eigen::MatrixXd out(h.rows(), g.cols());
-  linear::set_product(h, g, out);
+  if (!correlated_) return model_->before_of(c, d).asDiagonal() * g;
+  const tests::Whitener& whitener = model_->projection->whitener();
+  return model_->on_channel(c, whitener.apply_transposed(whitened(d, g))) / model_->unit;
+}
+
+Eigen::MatrixXd ChannelSums::before_projection(const std::vector<int>& channels,
+                                               const std::vector<Eigen::MatrixXd>& g) const {
+  std::vector<Eigen::Index> first{0};
+  for (const Eigen::MatrixXd& of_channel : g) first.push_back(first.back() + of_channel.cols());
+  if (correlated_) {
+    const tests::Whitener& whitener = model_->projection->whitener();
+    Eigen::MatrixXd white(poses_ * whitener.rows_per_pose(), first.back());
+    for (std::size_t a = 0; a < g.size(); ++a)
+      white.middleCols(first[a], g[a].cols()) = whitened(channels[a], g[a]);
+    return linear::gram(white);
+  }
+  Eigen::MatrixXd out(first.back(), first.back());
+  for (std::size_t a = 0; a < g.size(); ++a)
+    for (std::size_t b = 0; b <= a; ++b)
+      out.block(first[b], first[a], g[b].cols(), g[a].cols()) =
+          g[b].transpose() * model_->before_of(channels[a], channels[b]).asDiagonal() * g[a];
+  out.triangularView<Eigen::StrictlyLower>() = out.transpose();
   return out;
 }
 
@@ -189,16 +216,13 @@ Eigen::MatrixXd ChannelSums::taken_up_by_laws(int c, const Eigen::MatrixXd& g) c
 }
 
 Eigen::MatrixXd ChannelSums::products(int c, int d) const {
-  const Eigen::MatrixXd& h = model_->before_of(c, d);
-  Eigen::MatrixXd out =
-      linear::transposed_product(-taken_[static_cast<std::size_t>(c)], taken_[static_cast<std::size_t>(d)]);
-  if (!correlated_) {
-    out.diagonal() += h.col(0);
-  } else if (c > d) {
-    out += h.transpose();
-  } else {
-    out += h;
-  }
+  const Eigen::MatrixXd &of_c = taken_[static_cast<std::size_t>(c)],
+                        &of_d = taken_[static_cast<std::size_t>(d)];
+  if (correlated_)
+    return before_projection(c, d, Eigen::MatrixXd::Identity(poses_, poses_)) -
+           linear::transposed_product(of_c, of_d);
+  Eigen::MatrixXd out = linear::transposed_product(-of_c, of_d);
+  out.diagonal() += model_->before_of(c, d);
   return out;
 }
 
@@ -209,11 +233,10 @@ Eigen::MatrixXd ChannelSums::product(int c, int d, const Eigen::MatrixXd& g) con
 }
 
 double ChannelSums::product(const LawOnChannels& a, const LawOnChannels& b) const {
+  const std::vector<Eigen::VectorXd> of_b = by_channel(b);
   double out = 0;
   for (std::size_t c = 0; c < a.size(); ++c)
-    for (std::size_t d = 0; d < b.size(); ++d)
-      if (a[c].size() > 0 && b[d].size() > 0)
-        out += a[c].dot(product(static_cast<int>(c), static_cast<int>(d), b[d]).col(0));
+    if (a[c].size() > 0) out += a[c].dot(of_b[c]);
   return out;
 }
 
@@ -225,13 +248,22 @@ double ChannelSums::by_residual(const LawOnChannels& a) const {
 }
 
 std::vector<Eigen::VectorXd> ChannelSums::by_channel(const LawOnChannels& a) const {
-  std::vector<Eigen::VectorXd> out;
-  for (int c = 0; c < total_; ++c) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(poses_);
-    for (std::size_t d = 0; d < a.size(); ++d)
-      if (a[d].size() > 0) sum += product(c, static_cast<int>(d), a[d]).col(0);
-    out.push_back(std::move(sum));
+  Eigen::VectorXd taken = Eigen::VectorXd::Zero(taken_.front().rows());
+  std::vector<Eigen::VectorXd> out(taken_.size(), Eigen::VectorXd::Zero(poses_));
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(model_->rows.rows(), 1);
+  for (std::size_t d = 0; d < a.size(); ++d) {
+    if (a[d].size() == 0) continue;
+    const int channel = static_cast<int>(d);
+    taken += taken_[d] * a[d];
+    if (correlated_) rows += model_->spread(channel, a[d]);
+    for (std::size_t c = 0; !correlated_ && c < out.size(); ++c)
+      out[c] += model_->before_of(static_cast<int>(c), channel).cwiseProduct(a[d]);
   }
+  if (correlated_) {
+    const Scores before = model_->by_channel(model_->projection->whitener().apply(rows) / model_->unit);
+    for (std::size_t c = 0; c < out.size(); ++c) out[c] = before[c];
+  }
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] -= taken_[c].transpose() * taken;
   return out;
 }
 
@@ -239,7 +271,7 @@ void ChannelSums::take_out(const LawOnChannels& law) {
   double before = 0;
   for (std::size_t c = 0; c < law.size(); ++c)
     if (law[c].size() > 0)
-      before += law[c].dot(before_projection(static_cast<int>(c), static_cast<int>(c), law[c]).col(0));
+      before += before_projection({static_cast<int>(c)}, {Eigen::MatrixXd(law[c])})(0, 0);
   const double length2 = product(law, law);
   if (!(length2 > kRounding * kRounding * before)) return;
   TakenOut out{.law = law, .by_channel = {}};
@@ -271,18 +303,16 @@ Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
 }
 
 ChannelSums::Moments ChannelSums::moments(int channel) const {
-  const auto c = static_cast<std::size_t>(channel);
-  const Eigen::MatrixXd& h = model_->before_of(channel, channel);
-  const Eigen::MatrixXd& U = taken_[c];
   if (correlated_) {
     const Eigen::MatrixXd G = products(channel, channel);
     return {.trace = G.trace(), .squares = G.squaredNorm()};
   }
+  const Eigen::VectorXd& h = model_->before_of(channel, channel);
+  const Eigen::MatrixXd& U = taken_[static_cast<std::size_t>(channel)];
   // |diag(h) - U'U|^2 without the matrix of poses by poses.
   const Eigen::ArrayXd own = U.colwise().squaredNorm().transpose().array();
-  return {
-      .trace = h.sum() - own.sum(),
-      .squares = h.squaredNorm() - 2 * (h.col(0).array() * own).sum() + (U * U.transpose()).squaredNorm()};
+  return {.trace = h.sum() - own.sum(),
+          .squares = h.squaredNorm() - 2 * (h.array() * own).sum() + (U * U.transpose()).squaredNorm()};
 }
 
 }  // namespace mgtd::calib::discovery

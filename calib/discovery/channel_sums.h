@@ -19,7 +19,7 @@
 /// Z_c itself is never made: with W the whitener over the residual's unit, E_c the rows of one unit at each
 /// pose and B the basis of the model's parameters (projection.h), G_cd = h_cd - U_c' U_d, where h_cd =
 /// E_c' W'W E_d and U_c = B' W E_c is what those parameters can take. Where the noise is uncorrelated from
-/// pose to pose h_cd is diagonal, else a full matrix.
+/// pose to pose h_cd is diagonal and held, else W is applied whenever h_cd is asked for.
 ///
 /// Channels 0 .. 3N-1 are those of the readings; behind them stand five components of a gradient of the
 /// site's field (kGradient), where the poses have table angles.
@@ -76,8 +76,20 @@ class ChannelSums {
   [[nodiscard]] Eigen::VectorXd score(int channel) const {
     return scores_[static_cast<std::size_t>(channel)].col(0);
   }
-  /// h_cd G: columns of `g` as they are before projection, in the products with channel c.
+  /// The noise lasts from pose to pose.
+  [[nodiscard]] bool correlated() const { return correlated_; }
+  /// W E_c G: columns of `g` on channel c as they are before projection; h_cd is their product with those on
+  /// channel d. Whitener::rows_per_pose() rows for each pose.
+  [[nodiscard]] Eigen::MatrixXd whitened(int c, const Eigen::MatrixXd& g) const;
+  /// h_cd G.
   [[nodiscard]] Eigen::MatrixXd before_projection(int c, int d, const Eigen::MatrixXd& g) const;
+  /// g_c' h_cd g_d of the columns of several channels, side by side in the order of `channels`.
+  [[nodiscard]] Eigen::MatrixXd before_projection(const std::vector<int>& channels,
+                                                  const std::vector<Eigen::MatrixXd>& g) const;
+  /// h_cc 1: of a constant.
+  [[nodiscard]] const Eigen::VectorXd& before_of_one(int channel) const {
+    return model_->of_one[static_cast<std::size_t>(channel)];
+  }
   /// U_c G: what the model's own parameters can take, and below it what laws take that were taken out.
   [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const;
   [[nodiscard]] Eigen::MatrixXd taken_up_by_model(int c, const Eigen::MatrixXd& g) const;
@@ -115,10 +127,13 @@ class ChannelSums {
     double unit;           ///< Residual::unit
     Eigen::MatrixXd rows;  ///< E_c: of one unit on each channel, at every pose
     int channels;
-    std::vector<std::vector<Eigen::MatrixXd>> before;  ///< h_cd, d >= c: poses x 1 or poses x poses
+    /// Diagonals of h_cd, d >= c, where the noise is uncorrelated; else empty.
+    std::vector<std::vector<Eigen::VectorXd>> before;
+    std::vector<Eigen::VectorXd> of_one;  ///< h_cc 1
 
-    /// h_cd, or h_dc where d < c.
-    [[nodiscard]] const Eigen::MatrixXd& before_of(int c, int d) const;
+    [[nodiscard]] const Eigen::VectorXd& before_of(int c, int d) const;
+    /// E_c G.
+    [[nodiscard]] Eigen::MatrixXd spread(int c, const Eigen::MatrixXd& g) const;
     /// E_c' X, X rows as in LinearRows.
     [[nodiscard]] Eigen::MatrixXd on_channel(int c, const Eigen::MatrixXd& X) const;
     /// E_c' W' X of every channel, X as the whitener gives rows.

@@ -43,14 +43,15 @@ std::vector<Share> shares(const std::vector<RankedLaw>& ranked, double of_head,
 double gradient_size_nT(LawOnChannels law, const ChannelSums& sums) {
   for (Eigen::VectorXd& component : law)
     if (component.size() > 0) component.array() -= component.mean();
-  double squares = 0, weights = 0;
-  for (int c = sums.channels(); c < sums.total(); ++c)
-    for (int d = sums.channels(); d < sums.total(); ++d)
-      squares += law[static_cast<std::size_t>(c)].dot(
-          sums.before_projection(c, d, law[static_cast<std::size_t>(d)]).col(0));
-  for (int c = 0; c < sums.channels(); ++c)
-    weights += sums.before_projection(c, c, Eigen::VectorXd::Ones(sums.poses())).sum();
-  return std::sqrt(squares / weights);
+  std::vector<int> components;
+  std::vector<Eigen::MatrixXd> values;
+  for (int c = sums.channels(); c < sums.total(); ++c) {
+    components.push_back(c);
+    values.emplace_back(law[static_cast<std::size_t>(c)]);
+  }
+  double weights = 0;
+  for (int c = 0; c < sums.channels(); ++c) weights += sums.before_of_one(c).sum();
+  return std::sqrt(sums.before_projection(components, values).sum() / weights);
 }
 
 /// Rms of what a law adds to the readings; of a gradient each counts by its weight.

@@ -56,30 +56,20 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
   if (!values) return tl::unexpected(values.error());
   const auto count = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index n = count * static_cast<Eigen::Index>(on.size());
-  Eigen::MatrixXd A(n, n), B(n, n);
-  Eigen::VectorXd v(n), length2(n), whole(n);
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
-  std::vector<Eigen::MatrixXd> taken_up;
+  const Eigen::MatrixXd B = sums.before_projection(on, *values);
+  Eigen::VectorXd v(n), length2 = B.diagonal();
+  Eigen::MatrixXd taken_up;
   for (std::size_t a = 0; a < on.size(); ++a) {
     const auto at = static_cast<Eigen::Index>(a) * count;
     v.segment(at, count) = (*values)[a].transpose() * sums.score(on[a]);
-    taken_up.push_back(sums.taken_up(on[a], (*values)[a]));
-    for (std::size_t b = 0; b <= a; ++b) {
-      const auto beside = static_cast<Eigen::Index>(b) * count;
-      const Eigen::MatrixXd before = sums.before_projection(on[b], on[a], (*values)[a]);
-      B.block(beside, at, count, count) = (*values)[b].transpose() * before;
-      A.block(beside, at, count, count) =
-          B.block(beside, at, count, count) - taken_up[b].transpose() * taken_up[a];
-      if (b < a) continue;
-      const double of_one = one.dot(sums.before_projection(on[a], on[a], one).col(0));
-      whole.segment(at, count) = B.diagonal().segment(at, count);
-      length2.segment(at, count) =
-          whole.segment(at, count) - (one.transpose() * before).transpose().cwiseAbs2() / of_one;
-    }
+    const Eigen::MatrixXd of_channel = sums.taken_up(on[a], (*values)[a]);
+    taken_up.conservativeResize(of_channel.rows(), n);
+    taken_up.middleCols(at, count) = of_channel;
+    const Eigen::VectorXd& of_one = sums.before_of_one(on[a]);
+    length2.segment(at, count) -= ((*values)[a].transpose() * of_one).cwiseAbs2() / of_one.sum();
   }
-  A.triangularView<Eigen::StrictlyLower>() = A.transpose();
-  B.triangularView<Eigen::StrictlyLower>() = B.transpose();
-  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, whole, sums.absorbed_share());
+  const Eigen::MatrixXd A = B - taken_up.transpose() * taken_up;
+  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, B.diagonal(), sums.absorbed_share());
   const Eigen::MatrixXd V =
       scale.asDiagonal() * combinations(scale.asDiagonal() * A * scale.asDiagonal(),
                                         scale.asDiagonal() * B * scale.asDiagonal(), sums.absorbed_share());
@@ -100,7 +90,9 @@ void take_out(const FittedLaw& law, ChannelSums& sums) {
 
 double beyond(const FittedLaw& a, const FittedLaw& b, const ChannelSums& sums) {
   const std::vector<Eigen::VectorXd> signature = sums.by_channel(a.law);
-  double out = sums.product(a.law, a.law);
+  double out = 0;
+  for (std::size_t c = 0; c < a.law.size(); ++c)
+    if (a.law[c].size() > 0) out += a.law[c].dot(signature[c]);
   for (const LawOnChannels& direction : b.basis) {
     double along = 0;
     for (std::size_t c = 0; c < direction.size(); ++c)

@@ -1,20 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/formula_products.h"
 
+#include <algorithm>
+
 namespace mgtd::calib::discovery {
 
+/// Some members: the whitened columns of all at once would fill the memory.
+struct FormulaProducts::Piece {
+  std::size_t from{0}, to{0};            ///< members
+  Eigen::Index first{0}, columns{0};     ///< of FormulaValues::on
+  std::vector<Eigen::MatrixXd> white{};  ///< ChannelSums::whitened, by channel, where the noise is correlated
+};
+
 FormulaProducts::FormulaProducts(const FormulaValues& values, const ChannelSums& sums) : values_(&values) {
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(sums.poses());
   std::vector<Eigen::MatrixXd> taken_up;
   for (int c = 0; c < sums.total(); ++c) {
-    const Eigen::VectorXd of_channel = sums.before_projection(c, c, one);
-    by_one_.emplace_back(of_channel.transpose() * values.on(c));
-    of_one_.push_back(of_channel.sum());
+    by_one_.emplace_back(sums.before_of_one(c).transpose() * values.on(c));
+    of_one_.push_back(sums.before_of_one(c).sum());
     taken_up.push_back(sums.taken_up_by_model(c, values.on(c)));
   }
   mark(sums);
-  for (int a = 0; a < sums.total(); ++a)
-    for (int b = 0; b <= a; ++b) fill(sums, taken_up, a, b);
+  const auto& members = values.members();
+  for (Piece piece; piece.to < members.size();) {
+    piece = next_piece(sums, piece);
+    for (int a = 0; a < sums.total(); ++a)
+      for (int b = 0; b <= a; ++b) fill(sums, taken_up, piece, a, b);
+  }
+}
+
+FormulaProducts::Piece FormulaProducts::next_piece(const ChannelSums& sums, const Piece& last) const {
+  constexpr Eigen::Index kWhite = 2'000'000;  // values
+  const auto& members = values_->members();
+  if (!sums.correlated())
+    return {.from = 0, .to = members.size(), .first = 0, .columns = values_->on(0).cols()};
+  const Eigen::Index each = sums.poses() * sums.total() * sums.channels();
+  Piece out{.from = last.to, .to = last.to, .first = last.first + last.columns};
+  while (out.to < members.size() &&
+         (out.to == out.from || (out.columns + members[out.to].count) * each < kWhite))
+    out.columns += members[out.to++].count;
+  for (int c = 0; c < sums.total(); ++c)
+    out.white.push_back(sums.whitened(c, values_->on(c).middleCols(out.first, out.columns)));
+  return out;
 }
 
 /// Members that are asked about on two channels together.
@@ -37,43 +63,32 @@ void FormulaProducts::mark(const ChannelSums& sums) {
   }
 }
 
-/// For some members at a time: of all they would fill the memory.
-void FormulaProducts::fill(const ChannelSums& sums, const std::vector<Eigen::MatrixXd>& taken_up, int a,
-                           int b) {
-  constexpr Eigen::Index kTogether = 256;  // columns
+void FormulaProducts::fill(const ChannelSums& sums, const std::vector<Eigen::MatrixXd>& taken_up,
+                           const Piece& piece, int a, int b) {
   Pair& pair = pairs_[index(a, b)];
   const auto& members = values_->members();
-  const Eigen::MatrixXd& taken_a = taken_up[static_cast<std::size_t>(a)];
-  const Eigen::MatrixXd& taken_b = taken_up[static_cast<std::size_t>(b)];
-  for (std::size_t from = 0, to = 0; from < members.size(); from = to) {
-    Eigen::Index columns = 0;
-    for (to = from; to < members.size() && columns < kTogether; ++to)
-      if (pair.at[to] >= 0) columns += members[to].count;
-    if (columns == 0) continue;
-    Eigen::MatrixXd some(sums.poses(), columns);
-    Eigen::Index at = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      if (pair.at[i] < 0) continue;
-      some.middleCols(at, members[i].count) = values_->on(b).middleCols(members[i].first, members[i].count);
-      at += members[i].count;
-    }
-    some = sums.before_projection(a, b, some);
-    at = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      if (pair.at[i] < 0) continue;
-      const Eigen::Index first = members[i].first, count = members[i].count;
-      const auto size = static_cast<std::size_t>(count * count);
-      pair.at[i] = static_cast<Eigen::Index>(pair.products.size());
-      pair.products.resize(pair.products.size() + 2 * size);
-      double* const data = pair.products.data() + pair.at[i];
-      Eigen::Map<Eigen::MatrixXd> before(data, count, count), left(data + size, count, count);
-      for (Eigen::Index j = 0; j < count; ++j) {
-        for (Eigen::Index k = 0; k < count; ++k) {
-          before(k, j) = values_->on(a).col(first + k).dot(some.col(at + j));
-          left(k, j) = before(k, j) - taken_a.col(first + k).dot(taken_b.col(first + j));
-        }
+  const auto of_a = static_cast<std::size_t>(a), of_b = static_cast<std::size_t>(b);
+  const Eigen::VectorXd h =
+      sums.correlated() ? Eigen::VectorXd()
+                        : Eigen::VectorXd(sums.before_projection(a, b, Eigen::VectorXd::Ones(sums.poses())));
+  const auto product = [&](Eigen::Index i, Eigen::Index j) -> double {
+    if (sums.correlated())
+      return piece.white[of_a].col(i - piece.first).dot(piece.white[of_b].col(j - piece.first));
+    return values_->on(a).col(i).cwiseProduct(h).dot(values_->on(b).col(j));
+  };
+  for (std::size_t i = piece.from; i < piece.to; ++i) {
+    if (pair.at[i] < 0) continue;
+    const Eigen::Index first = members[i].first, count = members[i].count;
+    const auto size = static_cast<std::size_t>(count * count);
+    pair.at[i] = static_cast<Eigen::Index>(pair.products.size());
+    pair.products.resize(pair.products.size() + 2 * size);
+    double* const data = pair.products.data() + pair.at[i];
+    Eigen::Map<Eigen::MatrixXd> before(data, count, count), left(data + size, count, count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      for (Eigen::Index k = 0; k < count; ++k) {
+        before(k, j) = product(first + k, first + j);
+        left(k, j) = before(k, j) - taken_up[of_a].col(first + k).dot(taken_up[of_b].col(first + j));
       }
-      at += count;
     }
   }
 }

@@ -40,7 +40,10 @@ class FormulaProducts {
     return static_cast<std::size_t>(a) * by_one_.size() + static_cast<std::size_t>(b);
   }
   void mark(const ChannelSums& sums);
-  void fill(const ChannelSums& sums, const std::vector<Eigen::MatrixXd>& taken_up, int a, int b);
+  struct Piece;
+  [[nodiscard]] Piece next_piece(const ChannelSums& sums, const Piece& last) const;
+  void fill(const ChannelSums& sums, const std::vector<Eigen::MatrixXd>& taken_up, const Piece& piece, int a,
+            int b);
 
   const FormulaValues* values_;
   std::vector<Eigen::RowVectorXd> by_one_;

@@ -66,17 +66,27 @@ void add_library(const Workbench& bench, std::vector<RankedLaw>& ranked) {
   ranked.insert(ranked.end(), more.begin(), more.end());
 }
 
-/// Walk and jumps where the head acts, and on all axes; the better place counts.
+/// Where it is asked whether an offset walks, or jumps, beside a law: where the law acts, and on all axes.
+/// Jumps of all axes are noise that is larger than it is said to be, which is judged beforehand; of the only
+/// sensor each axis is asked about alone.
+std::vector<Place> places_of(RandomOffset kind, const Place& law, int channels) {
+  const bool array = law.kind == Place::Kind::array, gradient = law.kind == Place::Kind::gradient;
+  if (kind == RandomOffset::walk) {
+    std::vector<Place> out{law};
+    if (!array && channels > 3) out.push_back({Place::Kind::array, 0});
+    return out;
+  }
+  if (array || gradient) return {};
+  if (law.kind != Place::Kind::sensor || channels > 3) return {law};
+  return {{Place::Kind::axis, 0}, {Place::Kind::axis, 1}, {Place::Kind::axis, 2}};
+}
+
+/// The better place counts.
 void add_random(const Workbench& bench, const ChannelSums& sums, LawRound& round) {
   const int channels = sums.channels();
-  std::vector<Place> asked{round.head.place};
-  if (round.head.place.kind != Place::Kind::array && channels > 3) asked.push_back({Place::Kind::array, 0});
   double best = round.walk = round.jumps = -std::numeric_limits<double>::infinity();
-  for (const Place& place : asked) {
-    for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps}) {
-      // Jumps of all axes are noise that is larger than it is said to be: that is judged beforehand.
-      const bool on_all = place.kind == Place::Kind::array || place.kind == Place::Kind::gradient;
-      if (kind == RandomOffset::jumps && on_all) continue;
+  for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps}) {
+    for (const Place& place : places_of(kind, round.head.place, channels)) {
       const double score = evidence_of(kind, place.channels(channels), sums, bench.problem) -
                            2 * std::log(place.alike(channels)) - 2 * kSymbolPrice * kRandomSymbols;
       double& of_kind = kind == RandomOffset::walk ? round.walk : round.jumps;

@@ -166,9 +166,7 @@ Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas
                                 .solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
   // Gauge: what the calibration takes up of any curve goes out of this one.
   const bool own = covariate == "u" || covariate == "ux" || covariate == "uy" || covariate == "uz";
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(u.size());
-  const Eigen::VectorXd weight =
-      sums.before_projection(c, c, one).col(0).cwiseProduct(x).cwiseProduct(x).cwiseMax(0);
+  const Eigen::VectorXd weight = sums.before_of_one(c).cwiseProduct(x).cwiseProduct(x).cwiseMax(0);
   const Eigen::VectorXd points = Eigen::VectorXd::LinSpaced(kPoints, functions.low, functions.high);
   Eigen::MatrixXd F(u.size(), own ? 2 : 1), F_at(kPoints, F.cols());
   F.col(0).setOnes(), F_at.col(0).setOnes();

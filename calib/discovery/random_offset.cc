@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "calib/fit/joint/wandering_estimate.h"
+#include "calib/linear/product.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -45,21 +45,33 @@ class Tridiagonal {
   Eigen::VectorXd diagonal_, beside_, z_;
 };
 
-/// Of all channels together: what one of them shows is in the residual of the others, too. Without A: of
-/// every pose by itself.
-Tridiagonal tridiagonal(const std::optional<Eigen::MatrixXd>& A, const std::vector<int>& channels,
-                        const ChannelSums& sums) {
-  const Eigen::Index n = A ? A->cols() : sums.poses(), count = static_cast<Eigen::Index>(channels.size());
+/// Of all channels together: what one of them shows is in the residual of the others, too.
+Tridiagonal of_walks(const Eigen::MatrixXd& A, const std::vector<int>& channels, const ChannelSums& sums) {
+  const Eigen::Index n = A.cols(), count = static_cast<Eigen::Index>(channels.size());
+  Eigen::VectorXd by_residual(n * count);
+  Eigen::MatrixXd taken_up;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int c = channels[static_cast<std::size_t>(i)];
+    by_residual.segment(i * n, n) = A.transpose() * sums.score(c);
+    const Eigen::MatrixXd of_channel = sums.taken_up(c, A);
+    taken_up.conservativeResize(of_channel.rows(), n * count);
+    taken_up.middleCols(i * n, n) = of_channel;
+  }
+  return {sums.before_projection(channels, std::vector<Eigen::MatrixXd>(channels.size(), A)) -
+              linear::gram(taken_up),
+          by_residual};
+}
+
+/// The same of every pose by itself.
+Tridiagonal of_jumps(const std::vector<int>& channels, const ChannelSums& sums) {
+  const Eigen::Index n = sums.poses(), count = static_cast<Eigen::Index>(channels.size());
   Eigen::MatrixXd products(n * count, n * count);
   Eigen::VectorXd by_residual(n * count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const int c = channels[static_cast<std::size_t>(i)];
-    by_residual.segment(i * n, n) = A ? Eigen::VectorXd(A->transpose() * sums.score(c)) : sums.score(c);
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      const int d = channels[static_cast<std::size_t>(j)];
-      products.block(i * n, j * n, n, n) =
-          A ? Eigen::MatrixXd(A->transpose() * sums.product(c, d, *A)) : sums.products(c, d);
-    }
+    by_residual.segment(i * n, n) = sums.score(c);
+    for (Eigen::Index j = 0; j <= i; ++j)
+      products.block(i * n, j * n, n, n) = sums.products(c, channels[static_cast<std::size_t>(j)]);
   }
   return {products, by_residual};
 }
@@ -81,10 +93,11 @@ double evidence_of(RandomOffset kind, const std::vector<int>& channels, const Ch
   constexpr int kValues = 30;
   constexpr double kFirst = 1e-2, kLast = 1e5;  // of a, in units of one over the largest g
   constexpr double kNoOdds = -std::numeric_limits<double>::infinity();
-  std::optional<Eigen::MatrixXd> A;
-  if (kind == RandomOffset::walk) A = walk_of(problem);
-  if ((A && A->size() == 0) || channels.empty() || channels.back() >= sums.total()) return kNoOdds;
-  const Tridiagonal all = tridiagonal(A, channels, sums);
+  if (channels.empty() || channels.back() >= sums.total()) return kNoOdds;
+  const bool walk = kind == RandomOffset::walk;
+  const Eigen::MatrixXd A = walk ? walk_of(problem) : Eigen::MatrixXd();
+  if (walk && A.size() == 0) return kNoOdds;
+  const Tridiagonal all = walk ? of_walks(A, channels, sums) : of_jumps(channels, sums);
   const double largest = all.largest_eigenvalue();
   if (!(largest > 0)) return kNoOdds;
   std::vector<double> q;
