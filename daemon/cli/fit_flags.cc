@@ -9,6 +9,8 @@
 #include <set>
 
 #include "calib/effects/common_axis.h"
+#include "calib/effects/effect_spec.h"
+#include "calib/effects/formula/formula.h"
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_columns.h"
 #include "daemon/cli/in_range.h"
@@ -174,10 +176,14 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
                fmt::join(source.model, ", "));
   for (const std::string& name : flags.with) {
     if (name == "none") continue;
+    const std::string whole = store::whole_spec(name, source.definitions);
     auto effect = calib::effects::library::make_effect(
-        store::whole_spec(name, source.definitions),
-        calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors());
+        whole, calib::effects::EffectContext{.table = &source.table, .offset_nT = {}}.sensors());
     if (!effect) return tl::unexpected(effect.error());
+    if (const auto spec = calib::effects::EffectSpec::parse(whole);
+        spec && calib::effects::formula::is_formula(*spec))
+      if (const auto ok = calib::effects::formula::check_columns(*spec, source.table); !ok)
+        return tl::unexpected(ok.error());
     put(out.effects, *effect);
   }
   if (!out.effects.empty() && out.method != calib::fit::Method::joint) {

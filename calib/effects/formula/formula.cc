@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "calib/effects/effect_context.h"
 #include "calib/effects/formula/formula_effect.h"
 #include "calib/effects/formula/history_name.h"
 #include "calib/effects/laws/axis_effect.h"
@@ -170,16 +171,19 @@ std::optional<int> reading_of(const std::string& column, const PoseTable& table)
   return std::nullopt;
 }
 
-/// The column that a name needs; empty where it needs none.
-std::string column_needed(const FormulaName& name, Level level) {
-  if (name.source == Source::column) return name.name;
-  if (name.source != Source::history) return {};
+/// The column that a name needs; of another source where it needs none.
+FormulaName column_needed(const FormulaName& name, Level level) {
+  if (name.source != Source::history) return name;
   const HistoryName looks_back = *history_name(name.name);
-  const FormulaName of = formula_name(looks_back.of, level, std::nullopt, 0);
+  FormulaName of = formula_name(looks_back.of, level, std::nullopt, 0);
   const bool field = of.source == Source::own || of.source == Source::input;
-  if (of.source == Source::temperature || (field && looks_back.kind == HistoryName::Kind::previous))
-    return {};
-  return of.source == Source::column ? of.name : name.name;
+  if (field && looks_back.kind != HistoryName::Kind::previous) of.source = Source::column, of.get = nullptr;
+  return of;
+}
+
+bool has_column(const PoseTable& table, const FormulaName& column) {
+  return column.get && std::any_of(table.poses.begin(), table.poses.end(),
+                                   [&](const Pose& pose) { return column.get(pose).has_value(); });
 }
 
 /// The levels at which a name stands for a value, "axis or platform"; empty where it may be a column only.
@@ -195,13 +199,28 @@ std::string levels_that_know(const std::string& name) {
   return fmt::format("{}", fmt::join(out, " or "));
 }
 
+bool knows_temperatures(const PoseTable& table) {
+  return std::any_of(table.poses.begin(), table.poses.end(), [](const Pose& pose) {
+    return std::any_of(pose.T_degC.begin(), pose.T_degC.end(), [](const auto& T) { return T.has_value(); });
+  });
+}
+
 /// What may stand in a formula beside columns.
-std::string_view names_known(const EffectSpec& spec, Level level) {
+std::string names_known(const EffectSpec& spec, Level level, const PoseTable& table) {
   if (of_gradient(spec)) return "coefficients k, or k1 and k2; t_h, pose, lag600_X of a column";
   if (level == Level::site) return "coefficients k or k1 to k3; t_h, pose, px, py, pz";
-  if (level == Level::platform)
-    return "coefficients k or k1 to k3; t_h, pose, T_degC, b, bx, by, bz, gx, gy, gz";
-  return "coefficients k or k1 to k3; t_h, pose, T_degC, u, ux, uy, uz";
+  return fmt::format("coefficients k or k1 to k3; t_h, pose, {}{}",
+                     knows_temperatures(table) ? "T_degC, " : "",
+                     level == Level::platform ? "b, bx, by, bz, gx, gy, gz" : "u, ux, uy, uz");
+}
+
+/// "in reports z stands for uz/50000; " where a name is one of the letters that reports of discover shorten
+/// names to.
+std::string letter_of_report(const std::string& name, Level level) {
+  if (level != Level::axis) return {};
+  if (name == "T") return "in reports T stands for T_degC; ";
+  if (name != "x" && name != "y" && name != "z") return {};
+  return fmt::format("in reports {0} stands for u{0}/{1:.0f}; ", name, kReferenceField_nT);
 }
 
 /// ", did you mean 'T1_degC'?" where a column has nearly this name.
@@ -275,16 +294,16 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
   const auto& formula = static_cast<const FormulaEffect&>(**effect);
   const std::vector<std::string> there = usable_columns(table);
   for (const FormulaName& name : formula.names()) {
-    const std::string column = column_needed(name, formula.level());
-    if (column.empty() || column == "pose") continue;
-    if (std::find(there.begin(), there.end(), column) != there.end()) continue;
+    const FormulaName column = column_needed(name, formula.level());
+    if (column.source != Source::column || column.name == "pose") continue;
     const auto wrong = [&](std::string message, std::string remedy) {
       return tl::unexpected(expression_error(*spec.find("expr"), column_of(*spec.find("expr"), name.name),
                                              std::move(message), std::move(remedy)));
     };
     const Level level = formula.level();
-    if (const auto sensor = reading_of(column, table)) {
-      if (formula.at(*sensor).empty()) continue;
+    const auto sensor = reading_of(column.name, table);
+    const bool now = name.source == Source::column;  // what was read before is not what is explained
+    if (now && sensor && !formula.at(*sensor).empty()) {
       if (level == Level::site)
         return wrong(fmt::format("{} acts on every sensor, and '{}' is a reading that it is to explain",
                                  spec.name, name.name),
@@ -295,12 +314,14 @@ Result<void> check_columns(const EffectSpec& spec, const PoseTable& table) {
                        : "use u, ux, uy, uz for the sensor's own field; readings of other sensors may stand "
                          "in a formula");
     }
+    if (has_column(table, column)) continue;
     if (const std::string known = levels_that_know(name.name); !known.empty())
       return wrong(fmt::format("'{}' is known at level {}, and {} is of level {}", name.name, known,
                                spec.name, level_text(spec, level)),
                    fmt::format("give another level, or one of the columns {}", fmt::join(there, ", ")));
     return wrong(fmt::format("no pose has a '{}'{}", name.name, meant(name.name, there)),
-                 fmt::format("columns: {}; {}", fmt::join(there, ", "), names_known(spec, level)));
+                 fmt::format("{}columns: {}; {}", letter_of_report(name.name, level), fmt::join(there, ", "),
+                             names_known(spec, level, table)));
   }
   return {};
 }

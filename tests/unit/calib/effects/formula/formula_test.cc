@@ -201,10 +201,38 @@ TEST(Formula, ANameOfAnotherLevelIsToldFromAColumn) {
   EXPECT_THAT(refused("a,level=gradient,expr=lampA").remedy, HasSubstr("coefficients k, or k1 and k2;"));
   EXPECT_THAT(refused("a,expr=z^4").message, HasSubstr("no pose has a 'z'"));
   EXPECT_THAT(refused("a,expr=z^4").message, ::testing::Not(HasSubstr("did you mean")));
+  EXPECT_THAT(refused("a,expr=z^4").remedy, HasSubstr("in reports z stands for uz/50000; columns: "));
+  EXPECT_THAT(refused("a,expr=exp(T)").remedy, HasSubstr("in reports T stands for T_degC; "));
+  EXPECT_THAT(refused("a,level=site,expr=z^4").remedy, ::testing::Not(HasSubstr("in reports")));
   EXPECT_THAT(refused("a,level=site,expr=gz").message, HasSubstr("'gz' is known at level platform"));
   EXPECT_THAT(refused("a,expr=px").message, HasSubstr("'px' is known at level site, and a is of level axis"));
   EXPECT_THAT(refused("a,expr=lag600_lampA").message, HasSubstr("no pose has a 'lag600_lampA'"));
   EXPECT_THAT(refused("a,level=gradient,expr=s1_x_nT").message, HasSubstr("a acts on every sensor"));
+}
+
+TEST(Formula, ATemperatureIsOfferedOnlyWhereThereIsOne) {
+  PoseTable table = warm_and_bent(4);
+  const auto spec = *EffectSpec::parse("a,expr=lampA");
+  EXPECT_THAT(check_columns(spec, table).error().remedy, HasSubstr("T_degC, u, ux"));
+  for (Pose& pose : table.poses)
+    for (auto& T : pose.T_degC) T.reset();
+  EXPECT_THAT(check_columns(spec, table).error().remedy, ::testing::Not(HasSubstr("T_degC")));
+}
+
+TEST(Formula, TakesEveryColumnThatAPoseHasAndWhatASensorReadBefore) {
+  PoseTable table = warm_and_bent(4);
+  for (const char* spec :
+       {"a@s1.x,expr=s2_x_nT", "a@s1.x,expr=prev_s1_x_nT", "a,level=site,expr=prev_s1_x_nT",
+        "a@s1.x,expr=f_sd_nT", "a,expr=f_nT", "a,expr=prev_u", "a,expr=prev_T_degC"}) {
+    const auto ok = check_columns(*EffectSpec::parse(spec), table);
+    EXPECT_TRUE(ok) << spec << ": " << ok.error().text();
+  }
+  EXPECT_THAT(check_columns(*EffectSpec::parse("a@s1.x,expr=s1_x_nT"), table).error().message,
+              HasSubstr("a acts on s1, whose reading it is to explain"));
+  EXPECT_THAT(check_columns(*EffectSpec::parse("a,expr=ref_x_nT"), table).error().message,
+              HasSubstr("no pose has a 'ref_x_nT'"));
+  for (Pose& pose : table.poses) pose.ref_nT = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(check_columns(*EffectSpec::parse("a,expr=ref_x_nT"), table));
 }
 
 TEST(Formula, DegreesHaveFunctionsOfTheirOwn) {
