@@ -19,14 +19,21 @@ constexpr double kBetter = 0.005;         ///< than more of the same, for what t
 /// Further poses of an action, beside the run they follow.
 struct Further {
   PoseTable table;
-  Eigen::Index rows_here{0};  ///< of the poses at the place of the run
+  std::size_t here{0};  ///< poses at the place of the run: the first ones
 };
 
 Further further(const PoseTable& table, const Action& action, const fit::joint::JointFit& fit) {
   Further out{.table = extended(table, action, fit.state.sensors)};
-  out.rows_here =
-      fit.problem.pose_rows() * static_cast<Eigen::Index>((action.moved ? table : out.table).poses.size());
+  out.here = (action.moved ? table : out.table).poses.size();
   return out;
+}
+
+/// Rows of the poses at the place of the run; poses that no fit takes have none.
+Eigen::Index rows_here(const fit::joint::JointProblem& problem, const Further& run) {
+  const Pose* const end = run.table.poses.data() + run.here;
+  return problem.pose_rows() *
+         std::count_if(problem.poses.begin(), problem.poses.end(),
+                       [end](const fit::joint::JointPose& pose) { return pose.pose < end; });
 }
 
 /// An effect of the site at two places: coefficients of the one, then of the other.
@@ -49,9 +56,10 @@ Eigen::MatrixXd columns_of(const ModelOnPoses& design, const criticism::tests::R
   if (names != nullptr)
     for (const effects::Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
   const Eigen::MatrixXd rows = criticism::tests::effect_rows(design.problem, design.state, *effect);
-  if ((*effect)->level() != effects::Level::site || run.rows_here >= rows.rows())
+  const Eigen::Index here = rows_here(design.problem, run);
+  if ((*effect)->level() != effects::Level::site || here == rows.rows())
     return residual.project(rows).projected;
-  return residual.project(at_two_places(rows, run.rows_here)).projected;
+  return residual.project(at_two_places(rows, here)).projected;
 }
 
 Eigen::VectorXd sizes_of(const criticism::tests::Candidate& winner, const std::vector<std::string>& names) {
@@ -61,10 +69,6 @@ Eigen::VectorXd sizes_of(const criticism::tests::Candidate& winner, const std::v
       if (c.name == names[i]) out[static_cast<Eigen::Index>(i)] = c.value;
   }
   return out;
-}
-
-Further as_it_is(const PoseTable& table, const fit::joint::JointProblem& problem) {
-  return {table, problem.pose_rows() * static_cast<Eigen::Index>(table.poses.size())};
 }
 
 /// What of `v` is not in the space of B, in squares.
@@ -155,7 +159,7 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
   auto alternatives = hardest(winner);
   if (alternatives.empty()) return out;
   {
-    const Further here = as_it_is(table, fit.problem);
+    const Further here{.table = table, .here = table.poses.size()};
     const auto design = model_on_poses(here.table, fit, options);
     if (!design) return out;
     const criticism::tests::Residual residual(design->problem, design->state, 0);
