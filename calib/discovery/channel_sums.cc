@@ -143,8 +143,7 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
               .unit = residual.unit(),
               .rows = unit_rows(fit.problem, fit.state),
               .channels = channels_,
-              .before = {},
-              .of_one = {}};
+              .before = {}};
   total_ = static_cast<int>(model.rows.cols());
   if (!correlated_) model.set_before();
   const Eigen::Index n = poses_ * residual.rows_per_pose(), p = residual.basis().cols();
@@ -154,17 +153,9 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
     taken_.emplace_back(on_channel.leftCols(p).transpose());
     scores_.emplace_back(on_channel.col(p));
   }
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(poses_);
-  for (int c = 0; c < total_; ++c) {
-    if (!correlated_) {
-      model.of_one.push_back(model.before_of(c, c));
-      continue;
-    }
-    const Eigen::MatrixXd white = model.projection->whitener().apply(model.spread(c, one)) / model.unit;
-    model.of_one.emplace_back(
-        model.on_channel(c, model.projection->whitener().apply_transposed(white)).col(0) / model.unit);
-  }
   model_ = std::make_shared<const Model>(std::move(model));
+  for (int c = 0; c < total_; ++c)
+    before_of_one_.emplace_back(before_projection(c, c, Eigen::VectorXd::Ones(poses_)));
 }
 
 Eigen::MatrixXd ChannelSums::whitened(int c, const Eigen::MatrixXd& g) const {

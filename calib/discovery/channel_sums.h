@@ -88,7 +88,7 @@ class ChannelSums {
                                                   const std::vector<Eigen::MatrixXd>& g) const;
   /// h_cc 1: of a constant.
   [[nodiscard]] const Eigen::VectorXd& before_of_one(int channel) const {
-    return model_->of_one[static_cast<std::size_t>(channel)];
+    return before_of_one_[static_cast<std::size_t>(channel)];
   }
   /// U_c G: what the model's own parameters can take, and below it what laws take that were taken out.
   [[nodiscard]] Eigen::MatrixXd taken_up(int c, const Eigen::MatrixXd& g) const;
@@ -129,7 +129,6 @@ class ChannelSums {
     int channels;
     /// Diagonals of h_cd, d >= c, where the noise is uncorrelated; else empty.
     std::vector<std::vector<Eigen::VectorXd>> before;
-    std::vector<Eigen::VectorXd> of_one;  ///< h_cc 1
 
     [[nodiscard]] const Eigen::VectorXd& before_of(int c, int d) const;
     /// E_c G.
@@ -146,6 +145,7 @@ class ChannelSums {
   bool correlated_;
   double absorbed_share_;
   std::shared_ptr<const Model> model_;
+  std::vector<Eigen::VectorXd> before_of_one_;
   std::vector<Eigen::MatrixXd> taken_;  ///< U_c
   Scores scores_;
   struct TakenOut {

@@ -34,8 +34,8 @@ std::optional<std::string_view> kernels_instead(std::string_view in_use, const c
 void take_fitting_kernels() {
   constexpr const char* kChoice = "OPENBLAS_CORETYPE";
   if (gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return;
-  const auto kernels = kernels_instead(kernels_in_use(), std::getenv(kChoice),
-                                       vector_units());  // NOLINT(concurrency-mt-unsafe)
+  const char* const chosen = std::getenv(kChoice);  // NOLINT(concurrency-mt-unsafe)
+  const auto kernels = kernels_instead(kernels_in_use(), chosen, vector_units());
   if (!kernels) return;
   setenv(kChoice, kernels->data(), 1);  // NOLINT(concurrency-mt-unsafe)
   gotoblas_dynamic_quit();
