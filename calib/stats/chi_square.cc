@@ -4,13 +4,15 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
+#include "calib/stats/log_gamma.h"
+
 namespace mgtd::calib::stats {
 namespace {
 
 constexpr int kGammaTerms = 10'000;
 constexpr double kGammaExact = 1e-16;
 
-double log_front(double a, double x) { return a * std::log(x) - x - std::lgamma(a); }
+double log_front(double a, double x) { return a * std::log(x) - x - log_gamma(a); }
 
 /// ln P(a, x), x < a + 1.
 double log_lower(double a, double x) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/stats/chi_square.h"
+#include "calib/stats/log_gamma.h"
 
 namespace mgtd::calib::stats {
 namespace {
@@ -30,7 +31,7 @@ double fraction(double a, double b, double x) {
 }
 
 double log_front(double a, double b, double x) {
-  return std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
+  return log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) + b * std::log1p(-x);
 }
 
 }  // namespace
