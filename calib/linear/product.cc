@@ -14,10 +14,19 @@ namespace {
 /// A run is judged beside the acquisition, and its digits must not depend on the number of processors.
 [[maybe_unused]] const bool kReady = (take_fitting_kernels(), openblas_set_num_threads(1), true);
 
-/// The library without threads of its own hands out its buffers without a lock: two threads that call it at
-/// once may be given the same one.
+/// The library as it is built without threads of its own hands out its buffers without a lock: two threads
+/// that call it at once may be given the same one. As it is built with threads it may be called at any time.
 std::mutex one_at_a_time;
-using Turn = std::lock_guard<std::mutex>;
+class Turn {
+ public:
+  Turn() {
+    if (!kThreads) turn_.lock();
+  }
+
+ private:
+  static inline const bool kThreads = openblas_get_parallel() != OPENBLAS_SEQUENTIAL;
+  std::unique_lock<std::mutex> turn_{one_at_a_time, std::defer_lock};
+};
 
 using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
@@ -32,7 +41,7 @@ blasint size(Eigen::Index n) { return static_cast<blasint>(n); }
 }  // namespace
 
 void add_gram(const Columns& A, Eigen::MatrixXd& G) {
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, size(A.cols()), size(A.rows()), 1, A.data(), lead(A), 1,
               G.data(), lead(G));
 }
@@ -46,7 +55,7 @@ Eigen::MatrixXd gram(const Columns& A) {
 
 Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(A.cols(), B.cols());
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
   return out;
@@ -55,7 +64,7 @@ Eigen::MatrixXd transposed_product(const Columns& A, const Columns& B) {
 Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
                                    const Eigen::Ref<const Eigen::MatrixXf>& B) {
   Eigen::MatrixXf out = Eigen::MatrixXf::Zero(A.cols(), B.cols());
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_sgemm(CblasColMajor, CblasTrans, CblasNoTrans, size(A.cols()), size(B.cols()), size(A.rows()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, out.data(), lead(out));
   return out;
@@ -67,19 +76,19 @@ void set_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
     C = A.lazyProduct(B);
     return;
   }
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
 }
 
 void subtract_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), -1,
               A.data(), lead(A), B.data(), lead(B), 1, C.data(), lead(C));
 }
 
 Eigen::MatrixXd triangle_product(const Columns& L, Eigen::MatrixXd Z) {
-  const Turn turn(one_at_a_time);
+  const Turn turn;
   cblas_dtrmm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, size(Z.rows()),
               size(Z.cols()), 1, L.data(), lead(L), Z.data(), lead(Z));
   return Z;
