@@ -2,10 +2,12 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/unrolled_channels.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -184,10 +186,17 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   out.U.bottomRows(globals) += out.scalar.global.transpose().lazyProduct(out.scalar.nuisance);
 }
 
-Reduced reduce(const JointProblem& problem, const JointState& state, double damping) {
+namespace {
+
+Reduced nothing(int fixed) {
+  return {.S = Eigen::MatrixXd::Zero(fixed, fixed), .g = Eigen::VectorXd::Zero(fixed), .cost = {}};
+}
+
+/// Of the poses from `from` on, before `to`: the lower triangle, without priors.
+Reduced reduce_poses(const JointProblem& problem, const PoseModel& model, const JointState& state,
+                     double damping, std::size_t from, std::size_t to) {
   const int p = problem.fixed();
-  Reduced out{.S = Eigen::MatrixXd::Zero(p, p), .g = Eigen::VectorXd::Zero(p), .cost = {}};
-  const PoseModel model(problem, state);
+  Reduced out = nothing(p);
   PoseBlocks b;
   Felt felt;
   Eigen::MatrixXd batch(p, kBatch * kNuisances);
@@ -197,7 +206,7 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
     out.S.selfadjointView<Eigen::Lower>().rankUpdate(batch.leftCols(filled * kNuisances), -1);
     filled = 0;
   };
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+  for (std::size_t k = from; k < to; ++k) {
     assemble(problem, model, state, k, Blocks::border, b);
     add_fixed(problem.slots(), b, problem.poses[k], felt, out);
     add_cost(b.cost, out.cost);
@@ -211,6 +220,24 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
     if (++filled == kBatch) flush();
   }
   flush();
+  return out;
+}
+
+}  // namespace
+
+Reduced reduce(const JointProblem& problem, const JointState& state, double damping) {
+  const PoseModel model(problem, state);
+  std::vector<Reduced> parts(linear::parts_of_poses(problem.poses.size()));
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t part, std::size_t from, std::size_t to) {
+    parts[part] = reduce_poses(problem, model, state, damping, from, to);
+  });
+  Reduced out = parts.empty() ? nothing(problem.fixed()) : std::move(parts.front());
+  for (std::size_t part = 1; part < parts.size(); ++part) {
+    out.S += parts[part].S;
+    out.g += parts[part].g;
+    out.predicted_decrease += parts[part].predicted_decrease;
+    add_cost(parts[part].cost, out.cost);
+  }
   out.S.triangularView<Eigen::StrictlyUpper>() = out.S.transpose();
   hold_idle_slots(problem, out.S);
   add_priors(problem, state, out);
@@ -219,14 +246,17 @@ Reduced reduce(const JointProblem& problem, const JointState& state, double damp
 }
 
 JointCost cost_of(const JointProblem& problem, const JointState& state) {
-  const int p = problem.fixed();
-  Reduced out{.S = Eigen::MatrixXd::Zero(p, p), .g = Eigen::VectorXd::Zero(p), .cost = {}};
+  Reduced out = nothing(problem.fixed());
   const PoseModel model(problem, state);
-  PoseBlocks b;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, Blocks::own, b);
-    add_cost(b.cost, out.cost);
-  }
+  std::vector<JointCost> parts(linear::parts_of_poses(problem.poses.size()));
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t part, std::size_t from, std::size_t to) {
+    PoseBlocks b;
+    for (std::size_t k = from; k < to; ++k) {
+      assemble(problem, model, state, k, Blocks::own, b);
+      add_cost(b.cost, parts[part]);
+    }
+  });
+  for (const JointCost& part : parts) add_cost(part, out.cost);
   add_priors(problem, state, out);
   return out.cost;
 }

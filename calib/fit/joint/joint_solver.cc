@@ -7,6 +7,7 @@
 
 #include "calib/fit/joint/unrolled_channels.h"
 #include "calib/linear/cholesky.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -15,21 +16,24 @@ namespace {
 void move_nuisances(const JointProblem& problem, const JointState& from, const Eigen::VectorXd& step,
                     double damping, JointState& to) {
   const PoseModel model(problem, from);
-  PoseBlocks b;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, from, k, Blocks::rows, b);
-    const auto globals = step.tail(b.linear.d_global.cols());
-    Channels moved = b.linear.d_global.lazyProduct(globals);
-    for (int i = 0; i < problem.sensors(); ++i) {
-      moved.segment<3>(3 * i) += b.linear.d_sensor.middleRows<3>(3 * i) *
-                                 step.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i);
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t, std::size_t first, std::size_t end) {
+    PoseBlocks b;
+    for (std::size_t k = first; k < end; ++k) {
+      assemble(problem, model, from, k, Blocks::rows, b);
+      const auto globals = step.tail(b.linear.d_global.cols());
+      Channels moved = b.linear.d_global.lazyProduct(globals);
+      for (int i = 0; i < problem.sensors(); ++i) {
+        moved.segment<3>(3 * i) += b.linear.d_sensor.middleRows<3>(3 * i) *
+                                   step.segment<sensor::kSensorParameters>(sensor::kSensorParameters * i);
+      }
+      moved = problem.poses[k].weight.cwiseProduct(moved);
+      over_unrolled_channels(moved.size(),
+                             [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
+      b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
+      b.H.diagonal() *= 1 + damping;
+      to.nuisances[k] += b.H.llt().solve(b.g);
     }
-    moved = problem.poses[k].weight.cwiseProduct(moved);
-    over_unrolled_channels(moved.size(), [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
-    b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
-    b.H.diagonal() *= 1 + damping;
-    to.nuisances[k] += b.H.llt().solve(b.g);
-  }
+  });
 }
 
 /// Along what is weakly known a step without damping is far too long, and one with the first that would do
@@ -104,15 +108,17 @@ void refit_nuisances(const JointProblem& problem, JointState& state) {
   // The field enters almost linearly: two steps settle it, further ones cost nothing once it is settled.
   constexpr int kSteps = 8;
   const PoseModel model(problem, state);
-  PoseBlocks b;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    for (int i = 0; i < kSteps; ++i) {
-      assemble(problem, model, state, k, Blocks::own, b);
-      const Nuisance step = b.H.llt().solve(b.g);
-      state.nuisances[k] += step;
-      if (step.dot(b.g) < kConverged) break;
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t, std::size_t first, std::size_t end) {
+    PoseBlocks b;
+    for (std::size_t k = first; k < end; ++k) {
+      for (int i = 0; i < kSteps; ++i) {
+        assemble(problem, model, state, k, Blocks::own, b);
+        const Nuisance step = b.H.llt().solve(b.g);
+        state.nuisances[k] += step;
+        if (step.dot(b.g) < kConverged) break;
+      }
     }
-  }
+  });
 }
 
 }  // namespace mgtd::calib::fit::joint

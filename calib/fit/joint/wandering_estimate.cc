@@ -11,6 +11,7 @@
 
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/cholesky.h"
+#include "calib/linear/parts.h"
 #include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::fit::joint {
@@ -153,6 +154,11 @@ struct SlowEquations {
   Eigen::MatrixXd by_fixed;  ///< fixed block x slow
   Eigen::MatrixXd gram;      ///< slow x slow
   Eigen::VectorXd by_residual;
+
+  SlowEquations& operator+=(const SlowEquations& other) {
+    by_fixed += other.by_fixed, gram += other.gram, by_residual += other.by_residual;
+    return *this;
+  }
 };
 
 /// Rows of the readings by the fixed block, weighted, of one pose.
@@ -181,22 +187,30 @@ FollowedPose followed(const JointProblem& problem, const JointPose& pose, const 
           .residual = b.residual - solved.transpose() * b.g};
 }
 
-void for_each_followed(const JointProblem& problem, const JointState& state, const auto& use) {
+/// The sum over all poses of what `add` adds to `nothing`.
+template <class Sum>
+Sum sum_over_followed(const JointProblem& problem, const JointState& state, const Sum& nothing,
+                      const auto& add) {
   const PoseModel model(problem, state);
-  PoseBlocks b;
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, Blocks::border, b);
-    use(problem.poses[k], followed(problem, problem.poses[k], b));
-  }
+  std::vector<Sum> parts(std::max<std::size_t>(1, linear::parts_of_poses(problem.poses.size())), nothing);
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t part, std::size_t from, std::size_t to) {
+    PoseBlocks b;
+    for (std::size_t k = from; k < to; ++k) {
+      assemble(problem, model, state, k, Blocks::border, b);
+      add(problem.poses[k], followed(problem, problem.poses[k], b), parts[part]);
+    }
+  });
+  for (std::size_t part = 1; part < parts.size(); ++part) parts.front() += parts[part];
+  return std::move(parts.front());
 }
 
 SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
                              const WanderingTerms& terms) {
   const Eigen::Index channels = problem.channels(), m = channels * kJ;
-  SlowEquations out{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
-                    .gram = Eigen::MatrixXd::Zero(m, m),
-                    .by_residual = Eigen::VectorXd::Zero(m)};
-  for_each_followed(problem, state, [&](const JointPose& pose, const FollowedPose& f) {
+  const SlowEquations nothing{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
+                              .gram = Eigen::MatrixXd::Zero(m, m),
+                              .by_residual = Eigen::VectorXd::Zero(m)};
+  const auto add = [&](const JointPose& pose, const FollowedPose& f, SlowEquations& out) {
     const auto w = pose.weight.asDiagonal();
     const sensor::ChannelCovariance M = w * f.readings * w;
     const Eigen::MatrixXd X = f.by_fixed * w;
@@ -207,7 +221,8 @@ SlowEquations slow_equations(const JointProblem& problem, const JointState& stat
       out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
       for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
     }
-  });
+  };
+  SlowEquations out = sum_over_followed(problem, state, nothing, add);
   out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
   return out;
 }
@@ -229,12 +244,13 @@ WhiteNoise white_noise(const JointFit& fit, const WanderingEstimate& w, const Wa
   // One size for all that wander: those of single channels are known to a fifth at best.
   const Channels wanders = (w.size.array() > 0).cast<double>();
   const double beyond_nT2 = w.size.squaredNorm() / wanders.sum() * terms.variance_beyond();
-  Channels beyond = Channels::Zero(channels), freedom = beyond;
-  for_each_followed(fit.problem, fit.state, [&](const JointPose& pose, const FollowedPose& f) {
-    beyond += beyond_nT2 * wanders.cwiseProduct(pose.weight.cwiseAbs2());
-    freedom += f.readings.diagonal();
-  });
-  beyond /= static_cast<double>(fit.problem.poses.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(channels, 2);  // of what lies beyond, and of freedom
+  sums = sum_over_followed(fit.problem, fit.state, sums,
+                           [&](const JointPose& pose, const FollowedPose& f, Eigen::MatrixXd& sum) {
+                             sum.col(0) += beyond_nT2 * wanders.cwiseProduct(pose.weight.cwiseAbs2());
+                             sum.col(1) += f.readings.diagonal();
+                           });
+  const Channels beyond = sums.col(0) / static_cast<double>(fit.problem.poses.size()), freedom = sums.col(1);
   const double mean = beyond.dot(freedom) / freedom.sum();
   if (!(mean > 0)) return out;
   const double share = std::min(1.0, (out.common - least) / mean);
@@ -247,14 +263,14 @@ WhiteNoise white_noise(const JointFit& fit, const WanderingEstimate& w, const Wa
 /// of three matrices would lose what a coarse table knows of the common rotation.
 Eigen::MatrixXd covariance_beside(const JointProblem& problem, const JointState& state,
                                   const linear::Cholesky& information, const Channels& beside) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(problem.fixed(), problem.fixed());
-  if (!(beside.maxCoeff() > 0)) return out;
+  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(problem.fixed(), problem.fixed());
+  if (!(beside.maxCoeff() > 0)) return nothing;
   const Channels sd = beside.cwiseSqrt();
-  for_each_followed(problem, state, [&](const JointPose&, const FollowedPose& f) {
-    const Eigen::MatrixXd errors = information.solve(Eigen::MatrixXd(f.by_fixed * sd.asDiagonal()));
-    out.noalias() += errors * errors.transpose();
-  });
-  return out;
+  return sum_over_followed(
+      problem, state, nothing, [&](const JointPose&, const FollowedPose& f, Eigen::MatrixXd& out) {
+        const Eigen::MatrixXd errors = information.solve(Eigen::MatrixXd(f.by_fixed * sd.asDiagonal()));
+        out.noalias() += errors * errors.transpose();
+      });
 }
 
 }  // namespace
