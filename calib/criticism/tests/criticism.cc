@@ -8,6 +8,7 @@
 
 #include "calib/criticism/tests/scan_refinement.h"
 #include "calib/fit/joint/pose_residuals.h"
+#include "calib/linear/parts.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -83,19 +84,22 @@ void refine_alternatives(Criticism& out) {
   constexpr double kInReach = 0.6;  // of the largest score
   const double largest = largest_S(out.families);
   double of_gradient = 0;
+  std::vector<ScoredFamily*> in_reach;
   for (std::size_t f = 0; f < out.families.size(); ++f) {
     ScoredFamily& family = out.families[f];
     if (family.candidate_effect->name == "site.gradient") of_gradient = family.winner().S;
-    if (family.winner().S >= kInReach * largest && out.rejects_named(f))
-      refine(fit.problem, fit.state, out.residual, out.noise.reference, family);
+    if (family.winner().S >= kInReach * largest && out.rejects_named(f)) in_reach.push_back(&family);
   }
+  linear::for_each_part(in_reach.size(), [&](std::size_t i) {
+    refine(fit.problem, fit.state, out.residual, out.noise.reference, *in_reach[i]);
+  });
   const double refined = largest_S(out.families);
   for (std::size_t f = 0; f < out.families.size(); ++f) {
     ScoredFamily& family = out.families[f];
     const bool came = family.candidate_effect->name == "site.step";
-    const bool in_reach =
+    const bool near =
         came ? family.winner().S == refined : std::max(family.winner().S, of_gradient) >= kInReach * refined;
-    if (family.candidate_effect->dipole_at && in_reach && out.rejects_named(f))
+    if (family.candidate_effect->dipole_at && near && out.rejects_named(f))
       refine_place(fit.problem, fit.state, out.residual, out.noise.reference, family);
   }
 }
@@ -107,15 +111,16 @@ Criticism tested(const fit::joint::JointFit& of, Residual residual, const Candid
   out.noise = noise_model(fit, out.residual);
   out.chi2 = out.residual.chi2(), out.dof = out.residual.dof();
   out.residual.measure_by(out.noise.reference.scale2);
-  for (const CandidateEffect& candidate_effect : candidate_effects.testable) {
-    if (whole_in_model(fit.problem, candidate_effect)) continue;
-    ScoredFamily scored =
-        score_family(fit.problem, fit.state, out.residual, out.noise.reference, candidate_effect);
+  std::vector<const CandidateEffect*> asked;
+  for (const CandidateEffect& candidate_effect : candidate_effects.testable)
+    if (!whole_in_model(fit.problem, candidate_effect)) asked.push_back(&candidate_effect);
+  for (ScoredFamily& scored :
+       score_families(fit.problem, fit.state, out.residual, out.noise.reference, asked)) {
     if (scored.testable()) {
       out.families.push_back(std::move(scored));
-    } else if (!in_model(fit.problem, candidate_effect)) {
+    } else if (!in_model(fit.problem, *scored.candidate_effect)) {
       out.untestable.push_back(
-          {candidate_effect.name, "calibration, attitude and field of these poses absorb it whole"});
+          {scored.candidate_effect->name, "calibration, attitude and field of these poses absorb it whole"});
     }
   }
   rate(before, seed, out);

@@ -2,6 +2,7 @@
 #include "calib/criticism/tests/judgement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "calib/criticism/tests/wandering_alternative.h"
+#include "calib/linear/parts.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -83,13 +85,23 @@ void ask(const WanderingAlternative& alternative, const Criticism& c, AgainstWal
 fit::joint::WanderingRates at_least(fit::joint::WanderingRates rates, const auto& deviance) {
   constexpr double kFactor = 1.6;
   constexpr int kMost = 8;
-  double least = deviance(rates);
-  for (const double step : {kFactor, 1 / kFactor}) {
-    for (int i = 0; i < kMost; ++i) {
-      const double next = deviance(rates * step);
-      if (next >= least) break;
-      least = next;
-      rates *= step;
+  const std::array<double, 3> steps{1, kFactor, 1 / kFactor};
+  std::array<double, 3> first{};
+  linear::for_each_part(first.size(), [&](std::size_t i) { first[i] = deviance(rates * steps[i]); });
+  const std::size_t towards = first[1] < first[0] ? 1 : 2;
+  if (first[towards] >= first[0]) return rates;
+  double least = first[towards];
+  rates *= steps[towards];
+  for (int i = 1; i < kMost;) {
+    std::vector<fit::joint::WanderingRates> ahead;
+    while (ahead.size() < linear::threads())
+      ahead.push_back((ahead.empty() ? rates : ahead.back()) * steps[towards]);
+    std::vector<double> next(ahead.size());
+    linear::for_each_part(next.size(), [&](std::size_t k) { next[k] = deviance(ahead[k]); });
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      if (next[k] >= least || i == kMost) return rates;
+      least = next[k], rates = ahead[k];
+      ++i;
     }
   }
   return rates;

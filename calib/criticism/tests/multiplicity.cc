@@ -7,6 +7,7 @@
 #include <span>
 
 #include "calib/linear/normal_draws.h"
+#include "calib/linear/parts.h"
 #include "calib/stats/chi_square.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -73,12 +74,11 @@ Draws draw(std::span<const ScoredFamily> families, std::size_t most, std::uint64
   return out;
 }
 
-/// Smallest priced log10 p of a family, by draw.
-std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std::size_t f,
-                             std::map<int, Tail>& tails) {
-  const Eigen::Index n = draws.sums.cols();
-  // The largest S of those questions that have rank and price in common.
-  std::map<std::pair<int, int>, Eigen::ArrayXd> largest;
+/// By rank and price, of the questions that have both in common: the largest S, by draw.
+using LargestS = std::map<std::pair<int, int>, Eigen::ArrayXd>;
+
+LargestS largest_of(const ScoredFamily& family, const Draws& draws, std::size_t f) {
+  LargestS largest;
   for (const auto& [v, at] : draws.first[f]) {
     const Signature& s = family.signatures[v];
     const Eigen::Index m = s.cols();
@@ -91,11 +91,16 @@ std::vector<double> smallest(const ScoredFamily& family, const Draws& draws, std
       top = top.size() == 0 ? S : top.max(S).eval();
     }
   }
-  std::vector<double> out(static_cast<std::size_t>(n), 0.0);
+  return largest;
+}
+
+/// Smallest priced log10 p of a family, by draw.
+std::vector<double> smallest(const LargestS& largest, std::map<int, Tail>& tails) {
+  std::vector<double> out(kDraws, 0.0);
   for (const auto& [kind, S] : largest) {
     const Tail& tail = tails.try_emplace(kind.first, kind.first).first->second;
     const double price = std::log10(kind.second);
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < S.size(); ++i) {
       double& l = out[static_cast<std::size_t>(i)];
       l = std::min(l, tail(S[i]) + price);
     }
@@ -123,19 +128,26 @@ double best_of(double log10_p, double m) {
 Rates draw_rates(const std::vector<ScoredFamily>& families, std::uint64_t seed) {
   Rates out;
   if (families.empty()) return out;
-  const Draws together = draw(families, kTogether, seed);
+  const std::size_t n = families.size();
+  std::vector<LargestS> among_all(n), alone(n);
+  linear::for_each_part(n + 1, [&](std::size_t part) {
+    if (part == 0) {
+      const Draws draws = draw(families, kTogether, seed);
+      for (std::size_t f = 0; f < n; ++f) among_all[f] = largest_of(families[f], draws, f);
+      return;
+    }
+    const std::size_t f = part - 1, values = families[f].signatures.size();
+    if (values > kTogether)
+      alone[f] = largest_of(families[f], draw({&families[f], 1}, values, seed + part), 0);
+  });
   std::map<int, Tail> tails;
   std::vector<double> best(kDraws, 0.0);
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    const ScoredFamily& family = families[f];
-    const std::vector<double> own = smallest(family, together, f, tails);
+  for (std::size_t f = 0; f < n; ++f) {
+    const std::vector<double> own = smallest(among_all[f], tails);
     const double m = questions_asked(own);
     for (std::size_t i = 0; i < own.size(); ++i) best[i] = std::min(best[i], best_of(own[i], m));
-    double& asked = out.family[family.candidate_effect->name] = m;
-    if (family.signatures.size() > kTogether) {
-      const Draws alone = draw({&family, 1}, family.signatures.size(), seed + f + 1);
-      asked = questions_asked(smallest(family, alone, 0, tails));
-    }
+    const bool scanned = families[f].signatures.size() > kTogether;
+    out.family[families[f].candidate_effect->name] = scanned ? questions_asked(smallest(alone[f], tails)) : m;
   }
   out.best = std::max(1.0, questions_asked(std::move(best)));
   return out;

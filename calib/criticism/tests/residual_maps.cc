@@ -14,6 +14,7 @@
 #include "calib/criticism/tests/site_maps.h"
 #include "calib/fit/joint/pose_model.h"
 #include "calib/fit/joint/single_samples.h"
+#include "calib/linear/parts.h"
 #include "calib/poses/kept_columns.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -24,7 +25,7 @@ struct Map {
   RowSource rows{};
   std::vector<Hypothesis> hypotheses{};  ///< all channels; each axis where the map is by channel
 };
-using Visit = std::function<void(const Map&)>;
+using Maps = std::vector<Map>;
 
 constexpr int kPowers = 3;       ///< of the temperature
 constexpr int kGainCosines = 4;  ///< a gain changes slowly
@@ -121,21 +122,21 @@ Range range_of_temperatures(const fit::joint::JointProblem& problem) {
   return out;
 }
 
-void add_time(const fit::joint::JointProblem& problem, const Visit& visit) {
+void add_time(const fit::joint::JointProblem& problem, Maps& maps) {
   const Range range = range_of_times(problem);
   if (!range.varies()) return;
-  visit(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
+  maps.push_back(by_channel(problem, "time", kCosines, [range](const fit::joint::JointPose& pose, int) {
     return cosines(range.scaled(pose.t_h), kCosines);
   }));
 }
 
-void add_azimuth(const fit::joint::JointProblem& problem, const Visit& visit) {
+void add_azimuth(const fit::joint::JointProblem& problem, Maps& maps) {
   constexpr int kHarmonics = 4;
   const bool any =
       std::any_of(problem.poses.begin(), problem.poses.end(),
                   [](const fit::joint::JointPose& p) { return p.pose->azimuth_rad.has_value(); });
   if (!any) return;
-  visit(by_channel(problem, "azimuth", 2 * kHarmonics, [](const fit::joint::JointPose& pose, int) {
+  maps.push_back(by_channel(problem, "azimuth", 2 * kHarmonics, [](const fit::joint::JointPose& pose, int) {
     std::vector<double> v;
     if (!pose.pose->azimuth_rad) return v;
     for (int j = 1; j <= kHarmonics; ++j) {
@@ -179,87 +180,92 @@ class Readings {
 };
 
 /// Chebyshev polynomials of the axis' own part of the field.
-void add_own_reading(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
+void add_own_reading(const fit::joint::JointProblem& problem, const Readings& readings, Maps& maps) {
   constexpr int kFirst = 2, kLast = 6;
-  visit(of_channels(problem, "own reading", kLast - kFirst + 1,
-                    [&readings](const fit::joint::JointPose& pose, int c) {
-                      const Eigen::Vector3d u = readings.direction(pose, c / 3);
-                      std::vector<double> v;
-                      for (int j = kFirst; j <= kLast; ++j) v.push_back(std::cos(j * std::acos(u[c % 3])));
-                      return v;
-                    }));
+  maps.push_back(of_channels(problem, "own reading", kLast - kFirst + 1,
+                             [&readings](const fit::joint::JointPose& pose, int c) {
+                               const Eigen::Vector3d u = readings.direction(pose, c / 3);
+                               std::vector<double> v;
+                               for (int j = kFirst; j <= kLast; ++j)
+                                 v.push_back(std::cos(j * std::acos(u[c % 3])));
+                               return v;
+                             }));
 }
 
-void add_direction(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
+void add_direction(const fit::joint::JointProblem& problem, const Readings& readings, Maps& maps) {
   constexpr Eigen::Index kMonomials = 5 + 7 + 9;
-  visit(by_channel(problem, "direction", kMonomials, [&readings](const fit::joint::JointPose& pose, int i) {
-    const Eigen::Vector3d u = readings.direction(pose, i);
-    std::vector<double> v;
-    // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
-    for (int degree = 2; degree <= 4; ++degree) {
-      for (int z = 0; z <= 1; ++z) {
-        for (int x = 0; x <= degree - z; ++x)
-          v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
-      }
-    }
-    return v;
-  }));
-}
-
-void add_temperature(const fit::joint::JointProblem& problem, const Visit& visit) {
-  const Range range = range_of_temperatures(problem);
-  if (!range.varies()) return;
-  visit(by_channel(problem, "temperature", kPowers, [range](const fit::joint::JointPose& pose, int i) {
-    const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
-    return T ? powers(range.scaled(*T), kPowers) : std::vector<double>{};
-  }));
-}
-
-/// The axis' own part of the field times functions of time and of temperature: a gain that changes.
-void add_gain(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
-  const Range of_times = range_of_times(problem), of_temperatures = range_of_temperatures(problem);
-  const auto own = [&](const fit::joint::JointPose& pose, int c) {
-    return readings.direction(pose, c / 3)[c % 3];
-  };
-  if (of_times.varies()) {
-    visit(of_channels(problem, "own reading x time", kGainCosines,
-                      [&](const fit::joint::JointPose& pose, int c) {
-                        return times(own(pose, c), cosines(of_times.scaled(pose.t_h), kGainCosines));
-                      }));
-  }
-  if (!of_temperatures.varies()) return;
-  visit(of_channels(
-      problem, "own reading x temperature", kPowers, [&](const fit::joint::JointPose& pose, int c) {
-        const auto& T = pose.pose->T_degC[static_cast<std::size_t>(c / 3)];
-        return T ? times(own(pose, c), powers(of_temperatures.scaled(*T), kPowers)) : std::vector<double>{};
+  maps.push_back(
+      by_channel(problem, "direction", kMonomials, [&readings](const fit::joint::JointPose& pose, int i) {
+        const Eigen::Vector3d u = readings.direction(pose, i);
+        std::vector<double> v;
+        // z^2 = 1 - x^2 - y^2: higher powers of z are the others.
+        for (int degree = 2; degree <= 4; ++degree) {
+          for (int z = 0; z <= 1; ++z) {
+            for (int x = 0; x <= degree - z; ++x)
+              v.push_back(std::pow(u[0], x) * std::pow(u[1], degree - z - x) * (z == 1 ? u[2] : 1.0));
+          }
+        }
+        return v;
       }));
 }
 
-void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, const Visit& visit) {
-  visit(by_channel(problem, "previous pose", 3, [&readings](const fit::joint::JointPose& pose, int i) {
-    std::vector<double> v;
-    if (pose.previous == nullptr) return v;
-    const Eigen::Vector3d y = readings.before_nT(pose, i);
-    const double size = pose.y_nT.segment<3>(3 * i).norm();
-    for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
-    return v;
-  }));
+void add_temperature(const fit::joint::JointProblem& problem, Maps& maps) {
+  const Range range = range_of_temperatures(problem);
+  if (!range.varies()) return;
+  maps.push_back(
+      by_channel(problem, "temperature", kPowers, [range](const fit::joint::JointPose& pose, int i) {
+        const auto& T = pose.pose->T_degC[static_cast<std::size_t>(i)];
+        return T ? powers(range.scaled(*T), kPowers) : std::vector<double>{};
+      }));
 }
 
-void add_mount(const fit::joint::JointProblem& problem, const Visit& visit) {
+/// The axis' own part of the field times functions of time and of temperature: a gain that changes.
+void add_gain(const fit::joint::JointProblem& problem, const Readings& readings, Maps& maps) {
+  const Range of_times = range_of_times(problem), of_temperatures = range_of_temperatures(problem);
+  const auto own = [&readings](const fit::joint::JointPose& pose, int c) {
+    return readings.direction(pose, c / 3)[c % 3];
+  };
+  if (of_times.varies()) {
+    maps.push_back(of_channels(problem, "own reading x time", kGainCosines,
+                               [own, of_times](const fit::joint::JointPose& pose, int c) {
+                                 return times(own(pose, c), cosines(of_times.scaled(pose.t_h), kGainCosines));
+                               }));
+  }
+  if (!of_temperatures.varies()) return;
+  maps.push_back(of_channels(problem, "own reading x temperature", kPowers,
+                             [own, of_temperatures](const fit::joint::JointPose& pose, int c) {
+                               const auto& T = pose.pose->T_degC[static_cast<std::size_t>(c / 3)];
+                               return T ? times(own(pose, c), powers(of_temperatures.scaled(*T), kPowers))
+                                        : std::vector<double>{};
+                             }));
+}
+
+void add_previous(const fit::joint::JointProblem& problem, const Readings& readings, Maps& maps) {
+  maps.push_back(
+      by_channel(problem, "previous pose", 3, [&readings](const fit::joint::JointPose& pose, int i) {
+        std::vector<double> v;
+        if (pose.previous == nullptr) return v;
+        const Eigen::Vector3d y = readings.before_nT(pose, i);
+        const double size = pose.y_nT.segment<3>(3 * i).norm();
+        for (int a = 0; a < 3; ++a) v.push_back(std::isfinite(y[a]) ? y[a] / size : 0);
+        return v;
+      }));
+}
+
+void add_mount(const fit::joint::JointProblem& problem, Maps& maps) {
   std::set<int> mounts;
   for (const fit::joint::JointPose& pose : problem.poses)
     if (pose.pose->mount) mounts.insert(*pose.pose->mount);
   if (mounts.size() < 2) return;
-  visit(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
-                   [mounts](const fit::joint::JointPose& pose, int) {
-                     std::vector<double> v;
-                     for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
-                     return v;
-                   }));
+  maps.push_back(by_channel(problem, "mount", static_cast<Eigen::Index>(mounts.size()),
+                            [mounts](const fit::joint::JointPose& pose, int) {
+                              std::vector<double> v;
+                              for (const int m : mounts) v.push_back(pose.pose->mount == m ? 1 : 0);
+                              return v;
+                            }));
 }
 
-void add_columns(const fit::joint::JointProblem& problem, const Visit& visit) {
+void add_columns(const fit::joint::JointProblem& problem, Maps& maps) {
   std::map<std::string, Range> columns;
   for (const fit::joint::JointPose& pose : problem.poses) {
     for (const auto& [name, value] : pose.pose->covariates)
@@ -267,32 +273,35 @@ void add_columns(const fit::joint::JointProblem& problem, const Visit& visit) {
   }
   for (const auto& [name, range] : columns) {
     if (!range.varies()) continue;
-    visit(by_channel(problem, name, 2, [name = name, range = range](const fit::joint::JointPose& pose, int) {
-      const auto found = pose.pose->covariates.find(name);
-      return found == pose.pose->covariates.end() ? std::vector<double>{}
-                                                  : powers(range.scaled(found->second), 2);
-    }));
+    maps.push_back(
+        by_channel(problem, name, 2, [name = name, range = range](const fit::joint::JointPose& pose, int) {
+          const auto found = pose.pose->covariates.find(name);
+          return found == pose.pose->covariates.end() ? std::vector<double>{}
+                                                      : powers(range.scaled(found->second), 2);
+        }));
   }
 }
 
-void each_map(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
-              const Visit& visit) {
-  const Readings readings(problem, state);
-  add_time(problem, visit);
-  add_azimuth(problem, visit);
-  add_own_reading(problem, readings, visit);
-  add_direction(problem, readings, visit);
-  add_temperature(problem, visit);
-  add_gain(problem, readings, visit);
-  add_previous(problem, readings, visit);
-  add_mount(problem, visit);
-  add_columns(problem, visit);
+/// `readings` must outlive what comes back.
+Maps maps_of(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+             const Readings& readings) {
+  Maps maps;
+  add_time(problem, maps);
+  add_azimuth(problem, maps);
+  add_own_reading(problem, readings, maps);
+  add_direction(problem, readings, maps);
+  add_temperature(problem, maps);
+  add_gain(problem, readings, maps);
+  add_previous(problem, readings, maps);
+  add_mount(problem, maps);
+  add_columns(problem, maps);
   for (SiteRows& site : site_map_rows(problem, state)) {
     const Eigen::Index m = site.rows.columns;
-    visit({.name = std::move(site.name),
-           .rows = std::move(site.rows),
-           .hypotheses = {picked("site", problem.channels(), 1, 0, m, m)}});
+    maps.push_back({.name = std::move(site.name),
+                    .rows = std::move(site.rows),
+                    .hypotheses = {picked("site", problem.channels(), 1, 0, m, m)}});
   }
+  return maps;
 }
 
 /// Empty where nothing of the map is left after the model's own parameters.
@@ -327,10 +336,13 @@ std::optional<MapScore> score_of(const Map& map, const Residual& residual, const
 
 std::vector<MapScore> score_maps(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
                                  const Residual& residual, const NoiseReference& noise) {
+  const Readings readings(problem, state);
+  const Maps maps = maps_of(problem, state, readings);
+  std::vector<std::optional<MapScore>> scores(maps.size());
+  linear::for_each_part(maps.size(), [&](std::size_t i) { scores[i] = score_of(maps[i], residual, noise); });
   std::vector<MapScore> out;
-  each_map(problem, state, [&](const Map& map) {
-    if (auto score = score_of(map, residual, noise)) out.push_back(*std::move(score));
-  });
+  for (std::optional<MapScore>& score : scores)
+    if (score) out.push_back(*std::move(score));
   std::sort(out.begin(), out.end(),
             [](const MapScore& a, const MapScore& b) { return a.log10_p < b.log10_p; });
   return out;

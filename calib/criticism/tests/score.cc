@@ -2,8 +2,11 @@
 #include "calib/criticism/tests/score.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "calib/linear/cholesky.h"
+#include "calib/linear/parts.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/stats/f_distribution.h"
 
@@ -125,12 +128,30 @@ void ScoredFamily::score_last(const NoiseReference& noise) {
 ScoredFamily score_family(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
                           const Residual& residual, const NoiseReference& noise,
                           const CandidateEffect& candidate_effect) {
-  ScoredFamily out{.candidate_effect = &candidate_effect};
-  for (const effects::EffectPtr& variant : candidate_effect.variants) {
-    out.signatures.emplace_back(residual, effect_source(problem, state, variant));
-    out.score_last(noise);
+  return std::move(score_families(problem, state, residual, noise, {&candidate_effect}).front());
+}
+
+std::vector<ScoredFamily> score_families(const fit::joint::JointProblem& problem,
+                                         const fit::joint::JointState& state, const Residual& residual,
+                                         const NoiseReference& noise,
+                                         const std::vector<const CandidateEffect*>& candidates) {
+  std::vector<const effects::EffectPtr*> variants;
+  for (const CandidateEffect* candidate : candidates)
+    for (const effects::EffectPtr& variant : candidate->variants) variants.push_back(&variant);
+  std::vector<std::optional<Signature>> signatures(variants.size());
+  linear::for_each_part(variants.size(), [&](std::size_t i) {
+    signatures[i].emplace(residual, effect_source(problem, state, *variants[i]));
+  });
+  std::vector<ScoredFamily> out;
+  auto signature = signatures.begin();
+  for (const CandidateEffect* candidate : candidates) {
+    ScoredFamily& family = out.emplace_back(ScoredFamily{.candidate_effect = candidate});
+    for (std::size_t v = 0; v < candidate->variants.size(); ++v) {
+      family.signatures.push_back(*std::move(*signature++));
+      family.score_last(noise);
+    }
+    family.calibrated = std::min(0.0, family.priced);
   }
-  out.calibrated = std::min(0.0, out.priced);
   return out;
 }
 

@@ -72,5 +72,10 @@ struct ScoredFamily {
 [[nodiscard]] ScoredFamily score_family(const fit::joint::JointProblem& problem,
                                         const fit::joint::JointState& state, const Residual& residual,
                                         const NoiseReference& noise, const CandidateEffect& candidate_effect);
+/// The same of several, in their order.
+[[nodiscard]] std::vector<ScoredFamily> score_families(const fit::joint::JointProblem& problem,
+                                                       const fit::joint::JointState& state,
+                                                       const Residual& residual, const NoiseReference& noise,
+                                                       const std::vector<const CandidateEffect*>& candidates);
 
 }  // namespace mgtd::calib::criticism::tests

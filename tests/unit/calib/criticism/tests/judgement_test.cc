@@ -3,9 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "calib/criticism/search/explain.h"
+#include "calib/linear/parts.h"
+#include "calib/report/explain_json.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/wandering_offsets.h"
+#include "tests/support/one_processor.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
 namespace mgtd::calib::criticism::tests {
@@ -31,6 +36,19 @@ TEST(Judgement, OffsetsThatWanderAreNoiseAndGetNoName) {
     EXPECT_TRUE(r.noise.wandering.any());
     EXPECT_THAT(report::sentence(r), ::testing::HasSubstr("slow wandering of all offsets"));
   }
+}
+
+TEST(Judgement, SaysTheSameOnOneProcessorToTheLastDigit) {
+  if (linear::threads() < 2) GTEST_SKIP() << "one processor";
+  HiddenRun run{.noise_nT = 0.2};
+  const auto walk = wandering_offsets({.step_nT = 0.1}, 7);
+  run.hidden = [walk](const Pose& p, int i, int a, const Eigen::Vector3d& y) {
+    return walk(p, i, a, y) + (i == 1 && a == 0 ? 0.9 * (*p.T_degC[1] - 20) : 0);
+  };
+  const PoseTable table = hidden_run(run, 6);
+  const std::string here = report::to_json(must_explain(table)).dump();
+  const test::OneProcessor one;
+  EXPECT_EQ(report::to_json(must_explain(table)).dump(), here);
 }
 
 /// A straight line is not what a walk does, however well a walk describes it.
