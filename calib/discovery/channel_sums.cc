@@ -278,14 +278,18 @@ void ChannelSums::take_out(const LawOnChannels& law) {
   taken_out_.push_back(std::move(out));
 }
 
-Scores ChannelSums::draws(Eigen::Index count, std::mt19937_64& random) const {
+Eigen::MatrixXd ChannelSums::noise(Eigen::Index count, std::mt19937_64& random) const {
   std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(model_->projection->basis().rows(), count,
+                                      [&] { return normal(random); });
+}
+
+Scores ChannelSums::scores_of(Eigen::MatrixXd noise) const {
   const Eigen::MatrixXd& basis = model_->projection->basis();
-  Eigen::MatrixXd noise = Eigen::MatrixXd::NullaryExpr(basis.rows(), count, [&] { return normal(random); });
   linear::subtract_product(basis, linear::transposed_product(basis, noise), noise);
   Scores out = model_->by_channel(noise.topRows(poses_ * model_->projection->whitener().rows_per_pose()));
   for (const TakenOut& law : taken_out_) {
-    Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(count);
+    Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(noise.cols());
     for (std::size_t c = 0; c < law.law.size(); ++c)
       if (law.law[c].size() > 0) along += law.law[c].transpose() * out[c];
     for (std::size_t c = 0; c < out.size(); ++c) out[c].noalias() -= law.by_channel[c] * along;

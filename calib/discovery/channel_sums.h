@@ -110,8 +110,10 @@ class ChannelSums {
   /// Nothing happens where the model takes up the law whole.
   void take_out(const LawOnChannels& law);
 
-  /// Scores of noise alone, `count` draws in the columns of each channel.
-  [[nodiscard]] Scores draws(Eigen::Index count, std::mt19937_64& random) const;
+  /// `count` draws of noise, a column each.
+  [[nodiscard]] Eigen::MatrixXd noise(Eigen::Index count, std::mt19937_64& random) const;
+  /// Scores of draws of noise, in the columns of each channel.
+  [[nodiscard]] Scores scores_of(Eigen::MatrixXd noise) const;
 
   /// G_cc as a whole: the mean and the variance of |s_c|^2 where s_c is noise are its trace and twice its
   /// squares.

@@ -107,13 +107,11 @@ PoseTable every_few(PoseTable table, std::size_t most) {
 
 std::vector<tests::ScoredFamily> scored_library(const NoiseInForce& in_force,
                                                 const tests::CandidateEffects& candidates) {
-  std::vector<tests::ScoredFamily> out;
-  for (const tests::CandidateEffect& candidate : candidates.testable) {
-    if (candidate.dipole_at) continue;  // explain looks for its place
-    out.push_back(tests::score_family(in_force.fit.problem, in_force.fit.state, in_force.residual,
-                                      in_force.noise, candidate));
-  }
-  return out;
+  std::vector<const tests::CandidateEffect*> scored;
+  for (const tests::CandidateEffect& candidate : candidates.testable)
+    if (!candidate.dipole_at) scored.push_back(&candidate);  // explain looks for its place
+  return tests::score_families(in_force.fit.problem, in_force.fit.state, in_force.residual, in_force.noise,
+                               scored);
 }
 
 /// The leading formulas of some laws as effects; none where one of them is no effect.

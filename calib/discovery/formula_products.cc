@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "calib/linear/parts.h"
+
 namespace mgtd::calib::discovery {
 
 /// Some members: the whitened columns of all at once would fill the memory.
@@ -13,18 +15,23 @@ struct FormulaProducts::Piece {
 };
 
 FormulaProducts::FormulaProducts(const FormulaValues& values, const ChannelSums& sums) : values_(&values) {
-  std::vector<Eigen::MatrixXd> taken_up;
-  for (int c = 0; c < sums.total(); ++c) {
-    by_one_.emplace_back(sums.before_of_one(c).transpose() * values.on(c));
-    of_one_.push_back(sums.before_of_one(c).sum());
-    taken_up.push_back(sums.taken_up_by_model(c, values.on(c)));
-  }
+  const auto total = static_cast<std::size_t>(sums.total());
+  std::vector<Eigen::MatrixXd> taken_up(total);
+  by_one_.resize(total), of_one_.resize(total);
+  linear::for_each_part(total, [&](std::size_t at) {
+    const auto c = static_cast<int>(at);
+    by_one_[at] = sums.before_of_one(c).transpose() * values.on(c);
+    of_one_[at] = sums.before_of_one(c).sum();
+    taken_up[at] = sums.taken_up_by_model(c, values.on(c));
+  });
   mark(sums);
   const auto& members = values.members();
   for (Piece piece; piece.to < members.size();) {
     piece = next_piece(sums, piece);
-    for (int a = 0; a < sums.total(); ++a)
-      for (int b = 0; b <= a; ++b) fill(sums, taken_up, piece, a, b);
+    linear::for_each_part(total * total, [&](std::size_t pair) {
+      const auto a = static_cast<int>(pair / total), b = static_cast<int>(pair % total);
+      if (b <= a) fill(sums, taken_up, piece, a, b);
+    });
   }
 }
 
@@ -38,8 +45,11 @@ FormulaProducts::Piece FormulaProducts::next_piece(const ChannelSums& sums, cons
   while (out.to < members.size() &&
          (out.to == out.from || (out.columns + members[out.to].count) * each < kWhite))
     out.columns += members[out.to++].count;
-  for (int c = 0; c < sums.total(); ++c)
-    out.white.push_back(sums.whitened(c, values_->on(c).middleCols(out.first, out.columns)));
+  out.white.resize(by_one_.size());
+  linear::for_each_part(out.white.size(), [&](std::size_t at) {
+    const auto c = static_cast<int>(at);
+    out.white[at] = sums.whitened(c, values_->on(c).middleCols(out.first, out.columns));
+  });
   return out;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/formula_values.h"
 
+#include "calib/linear/parts.h"
+
 namespace mgtd::calib::discovery {
 namespace {
 
-/// Values of the columns of one member; zeros where they have none.
-Result<Eigen::MatrixXd> values_of(const Columns& columns, int channel, LawInputs& inputs) {
-  Eigen::MatrixXd out(inputs.poses(), static_cast<Eigen::Index>(columns.size()));
+/// Writes the values of the columns of one member; zeros where they have none.
+Result<void> write_values(const Columns& columns, int channel, LawInputs& inputs,
+                          Eigen::Ref<Eigen::MatrixXd> out) {
   for (std::size_t j = 0; j < columns.size(); ++j) {
     const auto values = inputs(columns[j], channel);
     if (!values) return tl::unexpected(values.error());
@@ -16,7 +18,7 @@ Result<Eigen::MatrixXd> values_of(const Columns& columns, int channel, LawInputs
       out.col(static_cast<Eigen::Index>(j)) = *values;
     }
   }
-  return out;
+  return {};
 }
 
 }  // namespace
@@ -32,19 +34,22 @@ Result<FormulaValues> FormulaValues::of(const Grammar& grammar, LawInputs& input
       columns += count;
     }
   }
-  for (int c = 0; c < inputs.channels(); ++c) {
-    Eigen::MatrixXd all(inputs.poses(), columns);
+  out.columns_.assign(static_cast<std::size_t>(inputs.channels()), Eigen::MatrixXd(inputs.poses(), columns));
+  std::vector<Result<void>> written(out.columns_.size());
+  linear::for_each_part(written.size(), [&](std::size_t c) {
     for (const Member& m : out.members_) {
       const Family& family = grammar.families[m.family];
-      if (c > 0 && family.common) {
-        all.middleCols(m.first, m.count) = out.columns_.front().middleCols(m.first, m.count);
-        continue;
-      }
-      const auto values = values_of(family.columns(family.inner[m.inner]), c, inputs);
-      if (!values) return tl::unexpected(values.error());
-      all.middleCols(m.first, m.count) = *values;
+      if (c > 0 && family.common) continue;
+      written[c] = write_values(family.columns(family.inner[m.inner]), static_cast<int>(c), inputs,
+                                out.columns_[c].middleCols(m.first, m.count));
+      if (!written[c]) return;
     }
-    out.columns_.push_back(std::move(all));
+  });
+  for (std::size_t c = 0; c < written.size(); ++c) {
+    if (!written[c]) return tl::unexpected(written[c].error());
+    for (const Member& m : out.members_)
+      if (c > 0 && grammar.families[m.family].common)
+        out.columns_[c].middleCols(m.first, m.count) = out.columns_.front().middleCols(m.first, m.count);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/criticism/tests/rows.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -56,6 +57,54 @@ Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, Eigen::Index block,
   return out;
 }
 
+/// Whitened rows of all poses: by the parameters of the calibration and, in the last column, the residual;
+/// and the priors of those.
+struct AllRows {
+  Eigen::MatrixXd white;
+  tests::PriorRows priors;
+};
+
+/// By how much the law that the other poses find lowers chi-square of the poses of one fold; empty where no
+/// formula can be tried on the others.
+Result<std::optional<double>> fall_in_fold(std::size_t fold, const fit::joint::JointFit& fit,
+                                           const tests::Residual& residual, const Workbench& bench,
+                                           const AllRows& all) {
+  const std::size_t count = fit.problem.poses.size();
+  const auto seen = poses_where(count, [&](std::size_t k) { return k % kFolds != fold; });
+  const auto held = poses_where(count, [&](std::size_t k) { return k % kFolds == fold; });
+  const fit::joint::JointFit part = part_of(fit, seen);
+  tests::Residual of_part(part.problem, part.state, 0);
+  of_part.measure_by(residual.unit() * residual.unit());
+  const ChannelSums sums(part, of_part);
+  auto inputs = LawInputs::of(part, bench.inputs.run());
+  if (!inputs) return tl::unexpected(inputs.error());
+  const FormulaValues values = bench.products.values().at(seen);
+  const std::vector<RankedLaw> ranked =
+      rank_formulas(LawSearch(FormulaProducts(values, sums), sums).scores(), values, sums.channels());
+  if (ranked.empty()) return std::nullopt;
+  const Columns columns = bench.grammar.families[ranked.front().family].columns(ranked.front().inner);
+  // The law on all poses, as its columns with coefficients of the part.
+  const auto on_part = fitted_law(columns, ranked.front().place, *inputs, sums);
+  if (!on_part) return tl::unexpected(on_part.error());
+  LawInputs whole = bench.inputs.copy();
+  const auto law =
+      law_on(columns, ranked.front().place, on_part->value, whole, fit.problem.channels(), sums.total());
+  if (!law) return tl::unexpected(law.error());
+  const Eigen::VectorXd z =
+      residual.whitener().apply(law_rows(*law, fit.problem, gradient_rows(fit.problem, fit.state))) /
+      residual.unit();
+  // Parameters of the calibration follow from the poses that were seen, without the law and with it.
+  const Eigen::Index p = all.priors.fixed.cols(), block = residual.rows_per_pose();
+  const Eigen::MatrixXd train = rows_of(all.white, block, seen), test = rows_of(all.white, block, held),
+                        z_train = rows_of(z, block, seen), z_test = rows_of(z, block, held);
+  Eigen::MatrixXd J(train.rows() + all.priors.fixed.rows(), p), r(J.rows(), 2);
+  J << train.leftCols(p), all.priors.fixed;
+  r << train.col(p), train.col(p) - z_train, all.priors.residual, all.priors.residual;
+  const Eigen::MatrixXd step = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(J).solve(r);
+  return (test.col(p) - test.leftCols(p) * step.col(0)).squaredNorm() -
+         (test.col(p) - z_test.col(0) - test.leftCols(p) * step.col(1)).squaredNorm();
+}
+
 }  // namespace
 
 std::optional<double> halves_ratio(const fit::joint::JointFit& fit, double scale2, const FittedLaw& law) {
@@ -82,44 +131,17 @@ Result<std::optional<double>> held_out_fall(const fit::joint::JointFit& fit, con
   if (residual.whitener().rho() != 0 || residual.whitener().wanders() || count < 2 * kFewest)
     return std::nullopt;
   const tests::LinearRows linear = tests::linear_rows(fit.problem, fit.state);
-  const tests::PriorRows priors = tests::prior_rows(fit.problem, fit.state);
-  const Eigen::Index p = linear.fixed.cols(), block = residual.rows_per_pose();
-  Eigen::MatrixXd both(linear.fixed.rows(), p + 1);
+  Eigen::MatrixXd both(linear.fixed.rows(), linear.fixed.cols() + 1);
   both << linear.fixed, linear.residual;
-  const Eigen::MatrixXd white = residual.whitener().apply(both) / residual.unit();
+  const AllRows all{.white = residual.whitener().apply(both) / residual.unit(),
+                    .priors = tests::prior_rows(fit.problem, fit.state)};
+  std::vector<Result<std::optional<double>>> falls(kFolds);
+  linear::for_each_part(
+      kFolds, [&](std::size_t fold) { falls[fold] = fall_in_fold(fold, fit, residual, bench, all); });
   double out = 0;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    const auto seen = poses_where(count, [&](std::size_t k) { return k % kFolds != fold; });
-    const auto held = poses_where(count, [&](std::size_t k) { return k % kFolds == fold; });
-    const fit::joint::JointFit part = part_of(fit, seen);
-    tests::Residual of_part(part.problem, part.state, 0);
-    of_part.measure_by(residual.unit() * residual.unit());
-    const ChannelSums sums(part, of_part);
-    auto inputs = LawInputs::of(part, bench.inputs.run());
-    if (!inputs) return tl::unexpected(inputs.error());
-    const FormulaValues values = bench.products.values().at(seen);
-    const std::vector<RankedLaw> ranked =
-        rank_formulas(LawSearch(FormulaProducts(values, sums), sums).scores(), values, sums.channels());
-    if (ranked.empty()) return std::nullopt;
-    const Columns columns = bench.grammar.families[ranked.front().family].columns(ranked.front().inner);
-    // The law on all poses, as its columns with coefficients of the part.
-    const auto on_part = fitted_law(columns, ranked.front().place, *inputs, sums);
-    if (!on_part) return tl::unexpected(on_part.error());
-    const auto law = law_on(columns, ranked.front().place, on_part->value, bench.inputs,
-                            fit.problem.channels(), sums.total());
-    if (!law) return tl::unexpected(law.error());
-    const Eigen::VectorXd z =
-        residual.whitener().apply(law_rows(*law, fit.problem, gradient_rows(fit.problem, fit.state))) /
-        residual.unit();
-    // Parameters of the calibration follow from the poses that were seen, without the law and with it.
-    const Eigen::MatrixXd train = rows_of(white, block, seen), test = rows_of(white, block, held),
-                          z_train = rows_of(z, block, seen), z_test = rows_of(z, block, held);
-    Eigen::MatrixXd J(train.rows() + priors.fixed.rows(), p), r(J.rows(), 2);
-    J << train.leftCols(p), priors.fixed;
-    r << train.col(p), train.col(p) - z_train, priors.residual, priors.residual;
-    const Eigen::MatrixXd step = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(J).solve(r);
-    out += (test.col(p) - test.leftCols(p) * step.col(0)).squaredNorm() -
-           (test.col(p) - z_test.col(0) - test.leftCols(p) * step.col(1)).squaredNorm();
+  for (const Result<std::optional<double>>& fall : falls) {
+    if (!fall || !*fall) return fall;
+    out += **fall;
   }
   return out;
 }

@@ -76,13 +76,15 @@ Eigen::VectorXd LawInputs::Data::name(const std::string& text, int channel) cons
   return out;
 }
 
+void LawInputs::begin_tables() {
+  tables_.clear();
+  for (int c = 0; c < channels(); ++c)
+    tables_.emplace_back(poses(), [data = data_.get(), c](const std::string& asked) {
+      return std::optional(data->name(asked, c));
+    });
+}
+
 Result<Eigen::VectorXd> LawInputs::operator()(const std::string& expression, int channel) {
-  if (tables_.empty()) {
-    for (int c = 0; c < channels(); ++c)
-      tables_.emplace_back(poses(), [data = data_.get(), c](const std::string& asked) {
-        return std::optional(data->name(asked, c));
-      });
-  }
   auto out = tables_[static_cast<std::size_t>(channel)](expression);
   if (!out) return out;
   bool any = false;

@@ -20,6 +20,8 @@ class LawInputs {
   /// those. Offsets are those of the fit. The table must outlive this.
   [[nodiscard]] static Result<LawInputs> of(const fit::joint::JointFit& fit, const PoseTable& run);
 
+  [[nodiscard]] LawInputs copy() const { return LawInputs(*data_); }
+
   [[nodiscard]] Eigen::Index poses() const { return static_cast<Eigen::Index>(data_->rows.size()); }
   [[nodiscard]] int channels() const { return 3 * data_->values.sensors(); }
   [[nodiscard]] const PoseTable& run() const { return data_->values.table(); }
@@ -29,15 +31,15 @@ class LawInputs {
     return data_->name(name, channel);
   }
   /// Values of an expression on a channel, zero where it has none; empty where it has none anywhere. Refuses
-  /// what is no expression.
+  /// what is no expression. Several threads may ask, each of channels of its own.
   [[nodiscard]] Result<Eigen::VectorXd> operator()(const std::string& expression, int channel);
 
   /// Every number as far again from its mean over the run as `factor` says, but for angles and readings: to
   /// see what formulas say of conditions that did not occur.
-  void stretch(double factor) { data_->stretch = factor, tables_.clear(); }
+  void stretch(double factor) { data_->stretch = factor, begin_tables(); }
   /// An angle ("azimuth_deg") as if the table stood elsewhere by so much; zero: as it was recorded.
   void turn(std::string angle, double by_deg) {
-    data_->turned = std::move(angle), data_->by_deg = by_deg, tables_.clear();
+    data_->turned = std::move(angle), data_->by_deg = by_deg, begin_tables();
   }
 
  private:
@@ -50,10 +52,11 @@ class LawInputs {
     double by_deg{0};
     [[nodiscard]] Eigen::VectorXd name(const std::string& name, int channel) const;
   };
-  explicit LawInputs(Data data) : data_(std::make_unique<Data>(std::move(data))) {}
+  explicit LawInputs(Data data) : data_(std::make_unique<Data>(std::move(data))) { begin_tables(); }
+  void begin_tables();
 
   std::unique_ptr<Data> data_;
-  std::vector<effects::formula::TabulatedExpression> tables_;  ///< by channel, made when first asked
+  std::vector<effects::formula::TabulatedExpression> tables_;  ///< by channel
 };
 
 }  // namespace mgtd::calib::discovery

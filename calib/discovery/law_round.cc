@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
+#include <utility>
 
 #include "calib/discovery/random_offset.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -84,17 +87,26 @@ std::vector<Place> places_of(RandomOffset kind, const Place& law, int channels) 
 /// The better place counts.
 void add_random(const Workbench& bench, const ChannelSums& sums, LawRound& round) {
   const int channels = sums.channels();
+  struct Asked {
+    RandomOffset kind;
+    Place place;
+    double score{0};
+  };
+  std::vector<Asked> all;
+  for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps})
+    for (const Place& place : places_of(kind, round.head.place, channels)) all.push_back({kind, place});
+  linear::for_each_part(all.size(), [&](std::size_t i) {
+    Asked& asked = all[i];
+    asked.score = evidence_of(asked.kind, asked.place.channels(channels), sums, bench.problem) -
+                  2 * std::log(asked.place.alike(channels)) - 2 * kSymbolPrice * kRandomSymbols;
+  });
   double best = round.walk = round.jumps = -std::numeric_limits<double>::infinity();
-  for (const RandomOffset kind : {RandomOffset::walk, RandomOffset::jumps}) {
-    for (const Place& place : places_of(kind, round.head.place, channels)) {
-      const double score = evidence_of(kind, place.channels(channels), sums, bench.problem) -
-                           2 * std::log(place.alike(channels)) - 2 * kSymbolPrice * kRandomSymbols;
-      double& of_kind = kind == RandomOffset::walk ? round.walk : round.jumps;
-      of_kind = std::max(of_kind, score);
-      if (!(score > best)) continue;
-      best = score;
-      round.random_where = place.name();
-    }
+  for (const Asked& asked : all) {
+    double& of_kind = asked.kind == RandomOffset::walk ? round.walk : round.jumps;
+    of_kind = std::max(of_kind, asked.score);
+    if (!(asked.score > best)) continue;
+    best = asked.score;
+    round.random_where = asked.place.name();
   }
 }
 
@@ -103,6 +115,16 @@ double together(const std::vector<RankedLaw>& ranked) {
   double sum = 0;
   for (const RankedLaw& law : ranked) sum += std::exp((law.score - ranked.front().score) / 2);
   return ranked.front().score + 2 * std::log(sum);
+}
+
+/// The smallest log10 p of each draw, with what one kind of question found in it.
+void lower_to(const LawSearch::Largest& of_kind, const criticism::tests::NoiseReference& noise, int channels,
+              std::span<double> log10_p) {
+  const double price = std::log10(of_kind.alike);
+  for (std::size_t i = 0; i < log10_p.size(); ++i) {
+    const auto S = static_cast<double>(of_kind.S[static_cast<Eigen::Index>(i)]);
+    log10_p[i] = std::min(log10_p[i], noise.log10_p(S, of_kind.k, std::min(of_kind.axes, channels)) + price);
+  }
 }
 
 }  // namespace
@@ -134,22 +156,23 @@ Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool
 std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
                                   const criticism::tests::NoiseReference& noise, int draws,
                                   std::uint64_t seed) {
-  constexpr int kTogether = 250;  // scores of every formula on every draw: some ten megabytes, not hundreds
+  constexpr std::size_t kTogether = 250;  // scores of every formula on every draw: some ten megabytes
   std::mt19937_64 random(seed);
   const std::vector<Eigen::MatrixXf> unit_columns = search.unit_columns();
-  std::vector<double> out;
-  while (static_cast<int>(out.size()) < draws) {
-    const int count = std::min(kTogether, draws - static_cast<int>(out.size()));
-    std::vector<double> least(static_cast<std::size_t>(count), 0.0);
-    for (const LawSearch::Largest& largest : search.largest(sums.draws(count, random), unit_columns)) {
-      const double price = std::log10(largest.alike);
-      for (std::size_t i = 0; i < least.size(); ++i)
-        least[i] =
-            std::min(least[i], noise.log10_p(static_cast<double>(largest.S[static_cast<Eigen::Index>(i)]),
-                                             largest.k, std::min(largest.axes, sums.channels())) +
-                                   price);
+  std::vector<double> out(static_cast<std::size_t>(draws), 0.0);
+  for (std::span<double> rest(out); !rest.empty();) {
+    std::vector<std::span<double>> of_draws;
+    std::vector<Eigen::MatrixXd> drawn;
+    while (!rest.empty() && drawn.size() < linear::threads()) {
+      of_draws.push_back(rest.first(std::min(kTogether, rest.size())));
+      rest = rest.subspan(of_draws.back().size());
+      drawn.push_back(sums.noise(static_cast<Eigen::Index>(of_draws.back().size()), random));
     }
-    out.insert(out.end(), least.begin(), least.end());
+    linear::for_each_part(drawn.size(), [&](std::size_t i) {
+      for (const LawSearch::Largest& of_kind :
+           search.largest(sums.scores_of(std::move(drawn[i])), unit_columns))
+        lower_to(of_kind, noise, sums.channels(), of_draws[i]);
+    });
   }
   return out;
 }

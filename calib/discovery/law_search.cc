@@ -3,15 +3,20 @@
 
 #include <map>
 
+#include "calib/linear/parts.h"
 #include "calib/linear/product.h"
 
 namespace mgtd::calib::discovery {
 
 LawSearch::LawSearch(const FormulaProducts& products, const ChannelSums& sums)
-    : values_(products.values()), sums_(sums) {
-  for (int c = 0; c < sums.total(); ++c) channels_.push_back(on_channel(products, c));
+    : values_(products.values()), sums_(sums), channels_(static_cast<std::size_t>(sums.total())) {
+  linear::for_each_part(channels_.size(),
+                        [&](std::size_t c) { channels_[c] = on_channel(products, static_cast<int>(c)); });
+  std::vector<Place> of_several;
   for (const Place& place : places(sums.channels(), sums.has_gradient()))
-    if (place.kind != Place::Kind::axis) wide_.push_back(wide(products, place));
+    if (place.kind != Place::Kind::axis) of_several.push_back(place);
+  wide_.resize(of_several.size());
+  linear::for_each_part(wide_.size(), [&](std::size_t i) { wide_[i] = wide(products, of_several[i]); });
 }
 
 LawSearch::OnChannel LawSearch::on_channel(const FormulaProducts& products, int c) const {

@@ -70,7 +70,7 @@ TEST_P(ChannelSumsOf, DrawsHaveTheCovarianceOfTheScores) {
   s->sums.take_out(b);
   constexpr Eigen::Index kDraws = 4000;
   std::mt19937_64 random(11);
-  const Scores draws = s->sums.draws(kDraws, random);
+  const Scores draws = s->sums.scores_of(s->sums.noise(kDraws, random));
   Eigen::RowVectorXd of_a = Eigen::RowVectorXd::Zero(kDraws), of_b = of_a;
   for (std::size_t c = 0; c < a.size(); ++c) {
     if (a[c].size() > 0) of_a += a[c].transpose() * draws[c];

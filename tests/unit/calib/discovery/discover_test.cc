@@ -9,10 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "calib/linear/parts.h"
 #include "calib/report/discovery_report.h"
 #include "tests/rig/effect_list.h"
 #include "tests/rig/scenario.h"
 #include "tests/rig/simulated_table.h"
+#include "tests/support/one_processor.h"
 #include "tests/unit/calib/discovery/discovery_scene.h"
 
 namespace mgtd::calib::discovery {
@@ -44,6 +46,14 @@ TEST(Discover, NoiseHasNoLaw) {
     EXPECT_EQ(r.reason.measured, r.laws.front().log10_p);
     EXPECT_GT(r.hypotheses, 15'000U);
   }
+}
+
+TEST(Discover, SaysTheSameOnOneProcessorToTheLastDigit) {
+  if (linear::threads() < 2) GTEST_SKIP() << "one processor";
+  const Hidden law = on(8, [](const Pose& p) { return 2 * std::sin(3 * *p.azimuth_rad); });
+  const std::string here = report::to_json(found_in(law, 7, true), "run.csv").dump();
+  const test::OneProcessor one;
+  EXPECT_EQ(report::to_json(found_in(law, 7, true), "run.csv").dump(), here);
 }
 
 /// Draws are scored in single precision: the unit of a column must not matter.

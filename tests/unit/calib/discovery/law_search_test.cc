@@ -49,7 +49,7 @@ TEST(LawSearch, TheLargestOfNoiseIsThatOfSomeThousandIndependentQuestions) {
   const LawSearch search(FormulaProducts(values, s->sums), s->sums);
   std::mt19937_64 random(2);
   const std::vector<LawSearch::Largest> all =
-      search.largest(s->sums.draws(300, random), search.unit_columns());
+      search.largest(s->sums.scores_of(s->sums.noise(300, random)), search.unit_columns());
   const auto one_coefficient = std::find_if(all.begin(), all.end(), [](const LawSearch::Largest& largest) {
     return largest.kind == Place::Kind::axis && largest.k == 1;
   });
