@@ -17,6 +17,8 @@ namespace mgtd::daemon::app {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
+/// Added to the nice value of computations: they take two processors, and samples come first.
+constexpr int kGiveWay = 10;
 
 serve::StreamConfig stream_config(const config::Config& config) {
   serve::StreamConfig out;
@@ -37,7 +39,7 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       clock_(config_.speed_up),
       store_(std::move(store)),
       history_(store_),
-      worker_(io),
+      worker_(io, kGiveWay),
       core_(config_, *this),
       recording_(io, config_, quiet_),
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),

@@ -124,7 +124,9 @@ Result<std::shared_ptr<JobProcess>> JobProcess::start(boost::asio::io_context& i
   if (bounds.memory_bytes == 0) bounds.memory_bytes = memory_bytes() / 2;
   Pipes pipes;
   if (::pipe2(pipes.out, O_CLOEXEC) != 0 || ::pipe2(pipes.err, O_CLOEXEC) != 0) return no_process(errno);
-  std::vector<std::string> environment{"LC_ALL=C.UTF-8", "NO_COLOR=1", "MGTD_PROGRESS=lines"};
+  // Threads of OpenBLAS, which mgt does not use, would take address space and ask for it without end.
+  std::vector<std::string> environment{"LC_ALL=C.UTF-8", "NO_COLOR=1", "MGTD_PROGRESS=lines",
+                                       "OPENBLAS_NUM_THREADS=1"};
   // The last digits are those of the terminal only with the same kernels of OpenBLAS.
   if (const char* const kernels = std::getenv("OPENBLAS_CORETYPE"))  // NOLINT(concurrency-mt-unsafe)
     environment.push_back(fmt::format("OPENBLAS_CORETYPE={}", kernels));

@@ -52,6 +52,11 @@ TEST_F(JobProcessTest, SaysTheLastLineOfMany) {
   EXPECT_EQ(process_->said(), "round 20000");
 }
 
+/// Its threads would take address space, of which a job has a bounded amount.
+TEST_F(JobProcessTest, StartsNoThreadsOfOpenBLAS) {
+  EXPECT_EQ(shell("echo $OPENBLAS_NUM_THREADS").out, "1\n");
+}
+
 /// Neither a port, nor a socket, nor a word of our environment.
 TEST_F(JobProcessTest, InheritsNothing) {
   const int held = ::open("/dev/null", O_RDONLY);
