@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
-#include <atomic>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "calib/discovery/discovery_report.h"
+#include "calib/linear/parts.h"
 #include "tests/discovery/unknown_law.h"
 
 /// Asks discover about runs in which the truth is known, and keeps what it said.
@@ -41,17 +40,11 @@ struct Answer {
 /// The same without a true formula, and without a look at unseen poses.
 [[nodiscard]] Answer ask_of_lawless(const UnknownLaw& law, double d, std::uint64_t seed, int draws);
 
-/// `count` answers in order, made on two threads.
+/// `count` answers in order, made on two processors.
 template <class Make>
 std::vector<Answer> campaign(int count, const Make& make) {
   std::vector<Answer> out(static_cast<std::size_t>(count));
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int i = next++; i < count; i = next++) out[static_cast<std::size_t>(i)] = make(i);
-  };
-  std::thread other(work);
-  work();
-  other.join();
+  linear::for_each_part(out.size(), [&](std::size_t i) { out[i] = make(static_cast<int>(i)); });
   return out;
 }
 

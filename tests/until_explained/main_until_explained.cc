@@ -8,11 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <fstream>
 #include <random>
-#include <thread>
 
+#include "calib/linear/parts.h"
 #include "daemon/store/run_file.h"
 #include "tests/blind/page.h"
 #include "tests/blind/planted.h"
@@ -103,18 +102,12 @@ Game play(std::uint64_t seed, const std::string& folder) {
 
 std::vector<Game> play_all(const std::vector<std::uint64_t>& seeds, const std::string& folder) {
   std::vector<Game> out(seeds.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < seeds.size(); i = next++) {
-      Game& game = out[i];
-      game = play(seeds[i], folder);
-      for (const daemon::run::RunJudgement& j : game.judgements)
-        fmt::print(stderr, "{} {} ({} poses): {}; {}\n", seeds[i], game.hidden, j.poses, j.found, j.next);
-    }
-  };
-  std::thread other(work);
-  work();
-  other.join();
+  calib::linear::for_each_part(seeds.size(), [&](std::size_t i) {
+    Game& game = out[i];
+    game = play(seeds[i], folder);
+    for (const daemon::run::RunJudgement& j : game.judgements)
+      fmt::print(stderr, "{} {} ({} poses): {}; {}\n", seeds[i], game.hidden, j.poses, j.found, j.next);
+  });
   return out;
 }
 
