@@ -12,13 +12,14 @@
 #include "tests/accuracy/markdown.h"
 #include "tests/blind/answer_file.h"
 #include "tests/blind/page.h"
+#include "tests/blind/real_answer.h"
 #include "tests/rig/pose_writer.h"
 
 namespace mgtd::calib::testing {
 namespace {
 
 using mgtd::testing::MarkdownTable;
-using Answers = std::vector<RealAnswer>;
+using RealAnswers = std::vector<RealAnswer>;
 
 constexpr const char* kAboutRealNoise = R"(## Real noise
 
@@ -73,8 +74,8 @@ void keep(const std::string& folder, const std::string& name, const PoseTable& t
   std::ofstream(folder + "/" + name + ".csv") << rig::pose_table_csv(table);
 }
 
-Answers ask(const RealKind& kind, const Sizes& n, AnswerFile& file, Progress& progress) {
-  Answers out;
+RealAnswers ask(const RealKind& kind, const Sizes& n, AnswerFile<RealAnswer>& file, Progress& progress) {
+  RealAnswers out;
   for (int i = 0; i < n.real; ++i) {
     const std::uint64_t seed = n.first_seed + static_cast<std::uint64_t>(i);
     if (const RealAnswer* known = file.find(kind.name, seed)) {
@@ -95,12 +96,12 @@ Answers ask(const RealKind& kind, const Sizes& n, AnswerFile& file, Progress& pr
 }
 
 template <class Is>
-int count(const Answers& answers, Is is) {
+int count(const RealAnswers& answers, Is is) {
   return static_cast<int>(std::count_if(answers.begin(), answers.end(), is));
 }
 
 template <class Value>
-std::vector<double> values(const Answers& answers, Value value) {
+std::vector<double> values(const RealAnswers& answers, Value value) {
   std::vector<double> out;
   for (const RealAnswer& a : answers)
     if (const std::optional<double> v = value(a)) out.push_back(*v);
@@ -122,7 +123,7 @@ std::string nees(const std::vector<double>& of, double dof) {
                      stats::chi_square_limit(0.025, n * dof) / n);
 }
 
-std::string verdicts(const Answers& answers) {
+std::string verdicts(const RealAnswers& answers) {
   std::string out;
   const auto add = [&](int n, std::string_view what) {
     if (n > 0) out += fmt::format("{}{} {}", out.empty() ? "" : ", ", what, n);
@@ -157,7 +158,7 @@ std::string must_text(const RealKind& kind) {
   return "";
 }
 
-std::vector<std::string> noise_line(const RealKind& kind, const Answers& all) {
+std::vector<std::string> noise_line(const RealKind& kind, const RealAnswers& all) {
   const int runs = static_cast<int>(all.size());
   const auto over = values(all, [&](const RealAnswer& a) -> std::optional<double> {
     if (!kind.tensor || !a.error_after_nT_per_m || !a.plain_nT_per_m) return std::nullopt;
@@ -180,7 +181,7 @@ std::vector<std::string> noise_line(const RealKind& kind, const Answers& all) {
           fmt::format("{:.2f}", cpu_s)};
 }
 
-std::vector<std::string> site_line(const RealKind& kind, const Answers& all) {
+std::vector<std::string> site_line(const RealKind& kind, const RealAnswers& all) {
   const int runs = static_cast<int>(all.size());
   // What comes and goes is answered rightly by leaving out the poses it disturbs, too.
   const bool goes = std::find(kind.right.begin(), kind.right.end(), "site.transient") != kind.right.end();
@@ -231,7 +232,7 @@ std::string table_of(const std::vector<std::string>& header, const std::vector<R
                      const Sizes& n, Line line) {
   if (kinds.empty()) return "";
   MarkdownTable table(header);
-  AnswerFile file(n.answers);
+  AnswerFile<RealAnswer> file(n.answers);
   Progress progress(n.real * static_cast<int>(kinds.size()));
   for (const RealKind& kind : kinds) {
     const auto cells = line(kind, ask(kind, n, file, progress));

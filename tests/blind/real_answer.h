@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ struct RealAnswer {
   /// the plain rig to 1.2.
   [[nodiscard]] bool good(const RealKind& kind) const;
 };
+
+/// As a line of an answer file.
+void to_json(nlohmann::json& j, const RealAnswer& answer);
+void from_json(const nlohmann::json& j, RealAnswer& answer);
 
 [[nodiscard]] RealAnswer answer_to(const RealRun& run, bool parameters);
 /// "PARTIAL axis.gain.step axis.transverse, 0.05 nT/m (plain 0.03)".

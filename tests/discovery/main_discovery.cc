@@ -68,6 +68,10 @@ int main(int argc, char** argv) {
   app.add_option("--first-seed", extent.first_seed, "added to all seeds")->capture_default_str();
   app.add_option("--law", extent.law, "regular expression: only the laws that it finds")
       ->capture_default_str();
+  app.add_option(
+      "--answers", extent.answers,
+      "file of what was answered, a line a run; those that it holds are not asked again, so that a "
+      "campaign can be interrupted and go on");
   app.add_option("--only", only, "sections: clean laws lawless; the others stay as they are in the file")
       ->delimiter(',')
       ->check(CLI::IsMember({"clean", "laws", "lawless"}));

@@ -15,13 +15,13 @@ std::string lawless_page(const Extent& extent) {
       "found, % | on s3.z, % | LAW, % | LAW-SET, % | SHAPE-ONLY, % | NOISE-LIKE, % "
       "|\n|---|---|---|---|---|---|---|---|\n";
   int all = 0, named = 0;
+  AnswerFile<Answer> file(extent.answers);
   for (std::size_t l = 0; l < lawless().size(); ++l) {
     for (const int d : {20, 40}) {
-      const auto answers = campaign(runs, [&](int i) {
-        const std::uint64_t seed = extent.first_seed + 500'000 + 1000 * l + static_cast<std::uint64_t>(i) +
-                                   17 * static_cast<std::uint64_t>(d);
-        return ask_of_lawless(lawless()[l], d, seed, extent.draws);
-      });
+      const auto answers =
+          campaign(file, fmt::format("{}, d = {}, {} draws", lawless()[l].name, d, extent.draws),
+                   extent.first_seed + 500'000 + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
+                   [&](std::uint64_t seed) { return ask_of_lawless(lawless()[l], d, seed, extent.draws); });
       const auto said = [&](LawFinding v) {
         return percent(count_of(answers, [v](const Answer& a) { return a.verdict == v; }), runs);
       };

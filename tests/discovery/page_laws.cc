@@ -62,14 +62,14 @@ std::string rows(const std::vector<UnknownLaw>& laws, std::uint64_t first_seed, 
       "| law | d | found, % | place, % | covariate, % | first, % | or alike, % | in the 99 % set, % | size "
       "of the set, median | verdict LAW, % | gain on unseen poses, median (worst) "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  AnswerFile<Answer> file(extent.answers);
   for (std::size_t l = 0; l < laws.size(); ++l) {
     if (!std::regex_search(laws[l].name, std::regex(extent.law))) continue;
     for (const int d : kSizes) {
-      const auto answers = campaign(runs, [&](int i) {
-        const std::uint64_t seed = extent.first_seed + first_seed + 1000 * l + static_cast<std::uint64_t>(i) +
-                                   17 * static_cast<std::uint64_t>(d);
-        return ask_of_law(laws[l], d, seed, extent.draws);
-      });
+      const auto answers =
+          campaign(file, fmt::format("{}, d = {}, {} draws", laws[l].name, d, extent.draws),
+                   extent.first_seed + first_seed + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
+                   [&](std::uint64_t seed) { return ask_of_law(laws[l], d, seed, extent.draws); });
       std::vector<std::size_t> sets;
       for (const Answer& a : answers) {
         sets.push_back(a.set);

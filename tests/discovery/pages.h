@@ -12,6 +12,7 @@ struct Extent {
   int draws{2000};
   std::uint64_t first_seed{0};
   std::string law{".*"};  ///< regular expression of the laws that are hidden
+  std::string answers{};  ///< path of an answer file; empty: none
 };
 
 [[nodiscard]] std::string clean_page(const Extent& extent);

@@ -5,10 +5,13 @@
 
 #include <filesystem>
 
+#include "tests/blind/real_answer.h"
+
 namespace mgtd::calib::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using File = AnswerFile<RealAnswer>;
 
 class AnswerFiles : public ::testing::Test {
  protected:
@@ -28,10 +31,10 @@ RealAnswer some_answer() {
 }
 
 TEST_F(AnswerFiles, GoOnWhereTheyWereCut) {
-  { AnswerFile(path_).add("walk-1", 101, some_answer()); }
+  { File(path_).add("walk-1", 101, some_answer()); }
   std::ofstream(path_, std::ios::app) << R"({"kind":"walk-1","se)";
-  { AnswerFile(path_).add("walk-1", 102, some_answer()); }
-  const AnswerFile file(path_);
+  { File(path_).add("walk-1", 102, some_answer()); }
+  const File file(path_);
   EXPECT_EQ(file.find("walk-1", 103), nullptr);
   EXPECT_EQ(file.find("walk", 101), nullptr);
   ASSERT_NE(file.find("walk-1", 102), nullptr);
@@ -46,10 +49,10 @@ TEST_F(AnswerFiles, GoOnWhereTheyWereCut) {
 }
 
 TEST_F(AnswerFiles, SayWhichLineIsNoAnswer) {
-  { AnswerFile(path_).add("walk-1", 101, some_answer()); }
+  { File(path_).add("walk-1", 101, some_answer()); }
   std::ofstream(path_, std::ios::app) << "{\"kind\":3}\n";
   try {
-    const AnswerFile file(path_);
+    const File file(path_);
     FAIL() << "a line that is no answer was read";
   } catch (const std::runtime_error& e) {
     EXPECT_THAT(e.what(), HasSubstr("mgtd-answers.jsonl:2: "));
@@ -57,7 +60,7 @@ TEST_F(AnswerFiles, SayWhichLineIsNoAnswer) {
 }
 
 TEST_F(AnswerFiles, KeepNothingWithoutAPath) {
-  AnswerFile file("");
+  File file("");
   file.add("walk-1", 101, some_answer());
   EXPECT_NE(file.find("walk-1", 101), nullptr);
 }
