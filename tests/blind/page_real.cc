@@ -10,7 +10,7 @@
 
 #include "calib/stats/chi_square.h"
 #include "tests/accuracy/markdown.h"
-#include "tests/blind/answer_file.h"
+#include "tests/blind/campaign.h"
 #include "tests/blind/page.h"
 #include "tests/blind/real_answer.h"
 #include "tests/rig/pose_writer.h"
@@ -69,30 +69,22 @@ class Progress {
 };
 
 void keep(const std::string& folder, const std::string& name, const PoseTable& table) {
-  if (folder.empty()) return;
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + name + ".csv") << rig::pose_table_csv(table);
 }
 
 RealAnswers ask(const RealKind& kind, const Sizes& n, AnswerFile<RealAnswer>& file, Progress& progress) {
-  RealAnswers out;
-  for (int i = 0; i < n.real; ++i) {
-    const std::uint64_t seed = n.first_seed + static_cast<std::uint64_t>(i);
-    if (const RealAnswer* known = file.find(kind.name, seed)) {
-      out.push_back(*known);
-      progress.known();
-      continue;
-    }
-    const RealRun run = kind.make(seed);
-    out.push_back(answer_to(run, kind.parameters));
-    file.add(kind.name, seed, out.back());
-    if (!out.back().good(kind)) {
-      fmt::print(stderr, "{} seed {}: {}\n", kind.name, seed, told(out.back()));
-      keep(n.keep, fmt::format("{}-{}", kind.name, seed), run.table);
-    }
-    progress.done(kind.name);
-  }
-  return out;
+  for (int i = 0; i < n.real; ++i)
+    if (file.find(kind.name, n.first_seed + static_cast<std::uint64_t>(i)) != nullptr) progress.known();
+  return campaign(
+      file, kind.name, n.first_seed, n.real,
+      [&](std::uint64_t seed) { return answer_to(kind.make(seed), kind.parameters); },
+      [&](std::uint64_t seed, const RealAnswer& answer) {
+        progress.done(kind.name);
+        if (answer.good(kind)) return;
+        fmt::print(stderr, "{} seed {}: {}\n", kind.name, seed, told(answer));
+        if (!n.keep.empty()) keep(n.keep, fmt::format("{}-{}", kind.name, seed), kind.make(seed).table);
+      });
 }
 
 template <class Is>

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "calib/discovery/discovery_report.h"
-#include "calib/linear/parts.h"
-#include "tests/blind/answer_file.h"
+#include "tests/blind/campaign.h"
 #include "tests/discovery/unknown_law.h"
 
 /// Asks discover about runs in which the truth is known, and keeps what it said.
@@ -47,24 +46,11 @@ struct Answer {
 void to_json(nlohmann::json& j, const Answer& answer);
 void from_json(const nlohmann::json& j, Answer& answer);
 
-/// Answers in the order of their seeds, made on two processors; those that the file has are not made again.
+/// Answers of one cell of the page.
 template <class Make>
-std::vector<Answer> campaign(AnswerFile<Answer>& file, const std::string& kind, std::uint64_t first_seed,
-                             int count, const Make& make) {
-  constexpr std::size_t kTogether = 8;  // answers of an interruption that are lost
-  std::vector<std::uint64_t> missing;
-  for (int i = 0; i < count; ++i)
-    if (const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
-        file.find(kind, seed) == nullptr)
-      missing.push_back(seed);
-  for (std::size_t from = 0; from < missing.size(); from += kTogether) {
-    std::vector<Answer> made(std::min(kTogether, missing.size() - from));
-    linear::for_each_part(made.size(), [&](std::size_t i) { made[i] = make(missing[from + i]); });
-    for (std::size_t i = 0; i < made.size(); ++i) file.add(kind, missing[from + i], made[i]);
-  }
-  std::vector<Answer> out;
-  for (int i = 0; i < count; ++i) out.push_back(*file.find(kind, first_seed + static_cast<std::uint64_t>(i)));
-  return out;
+std::vector<Answer> cell(AnswerFile<Answer>& file, const std::string& kind, std::uint64_t first_seed,
+                         int count, const Make& make) {
+  return campaign(file, kind, first_seed, count, make, [](std::uint64_t, const Answer&) {});
 }
 
 template <class Is>

@@ -48,10 +48,10 @@ std::string clean_page(const Extent& extent) {
   AnswerFile<Answer> file(extent.answers);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     const int n = kind == 0 ? extent.clean : std::max(1, extent.clean / 4);
-    const auto answers = campaign(file, fmt::format("{}, {} draws", kinds[kind].name, extent.draws),
-                                  extent.first_seed + 10'000 * (kind + 1), n, [&](std::uint64_t seed) {
-                                    return ask(clean_run(kinds[kind], seed), nullptr, extent.draws);
-                                  });
+    const auto answers = cell(file, fmt::format("{}, {} draws", kinds[kind].name, extent.draws),
+                              extent.first_seed + 10'000 * (kind + 1), n, [&](std::uint64_t seed) {
+                                return ask(clean_run(kinds[kind], seed), nullptr, extent.draws);
+                              });
     for (const Answer& a : answers)
       if (a.found)
         fmt::print(stderr, "{}: {} p {:.2f} {}\n", kinds[kind].name, discovery::to_string(a.verdict),

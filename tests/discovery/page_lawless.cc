@@ -19,9 +19,9 @@ std::string lawless_page(const Extent& extent) {
   for (std::size_t l = 0; l < lawless().size(); ++l) {
     for (const int d : {20, 40}) {
       const auto answers =
-          campaign(file, fmt::format("{}, d = {}, {} draws", lawless()[l].name, d, extent.draws),
-                   extent.first_seed + 500'000 + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
-                   [&](std::uint64_t seed) { return ask_of_lawless(lawless()[l], d, seed, extent.draws); });
+          cell(file, fmt::format("{}, d = {}, {} draws", lawless()[l].name, d, extent.draws),
+               extent.first_seed + 500'000 + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
+               [&](std::uint64_t seed) { return ask_of_lawless(lawless()[l], d, seed, extent.draws); });
       const auto said = [&](LawFinding v) {
         return percent(count_of(answers, [v](const Answer& a) { return a.verdict == v; }), runs);
       };

@@ -67,9 +67,9 @@ std::string rows(const std::vector<UnknownLaw>& laws, std::uint64_t first_seed, 
     if (!std::regex_search(laws[l].name, std::regex(extent.law))) continue;
     for (const int d : kSizes) {
       const auto answers =
-          campaign(file, fmt::format("{}, d = {}, {} draws", laws[l].name, d, extent.draws),
-                   extent.first_seed + first_seed + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
-                   [&](std::uint64_t seed) { return ask_of_law(laws[l], d, seed, extent.draws); });
+          cell(file, fmt::format("{}, d = {}, {} draws", laws[l].name, d, extent.draws),
+               extent.first_seed + first_seed + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
+               [&](std::uint64_t seed) { return ask_of_law(laws[l], d, seed, extent.draws); });
       std::vector<std::size_t> sets;
       for (const Answer& a : answers) {
         sets.push_back(a.set);
