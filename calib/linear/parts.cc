@@ -49,6 +49,8 @@ std::size_t threads() {
   return std::clamp<std::size_t>(std::min(processors, held), 1, kMost);
 }
 
+void keep_parts_on_this_thread() { in_a_part = true; }
+
 void for_each_part(std::size_t count, const std::function<void(std::size_t)>& work) {
   const std::size_t together = in_a_part ? 1 : std::min(count, threads());
   std::atomic<std::size_t> next{0};

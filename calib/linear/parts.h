@@ -6,8 +6,7 @@
 /// Work in parts that do not need each other, on two processors.
 ///
 /// A part writes only what belongs to it, and the caller puts together what the parts have made, in their
-/// order: the digits of a result do not depend on how many threads there are. The threads have the nice value
-/// of the one that calls, and end with the call.
+/// order: the digits of a result do not depend on how many threads there are. The threads end with the call.
 namespace mgtd::calib::linear {
 
 /// Threads that parts are given to: as many as the processors that this process may use (`taskset` narrows
@@ -20,6 +19,9 @@ namespace mgtd::calib::linear {
 /// done. Called within a part, it does them one after the other, in their order. Throws what a part throws,
 /// after the parts that had begun; further ones are not begun.
 void for_each_part(std::size_t count, const std::function<void(std::size_t)>& work);
+
+/// From now on the thread that calls does all its parts itself.
+void keep_parts_on_this_thread();
 
 /// The same with the poses of a run: part i are those from `from` on, before `to`. Up to 1024 poses are one
 /// part.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "calib/linear/parts.h"
 #include "calib/report/described_array.h"
 #include "daemon/app/service_notify.h"
 #include "daemon/serve/console/lane_request.h"
@@ -17,8 +18,6 @@ namespace mgtd::daemon::app {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(20);
-/// Added to the nice value of computations: they take two processors, and samples come first.
-constexpr int kGiveWay = 10;
 
 serve::StreamConfig stream_config(const config::Config& config) {
   serve::StreamConfig out;
@@ -39,7 +38,7 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       clock_(config_.speed_up),
       store_(std::move(store)),
       history_(store_),
-      worker_(io, kGiveWay),
+      worker_(io),
       core_(config_, *this),
       recording_(io, config_, quiet_),
       stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),
@@ -65,7 +64,14 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       ports_(io, clock_, config_, core_.instruments()),
       timer_(io),
       started_(clock_.now()),
-      published_{.rate = EpochRate(config_.speed_up)} {}
+      published_{.rate = EpochRate(config_.speed_up)} {
+  // The other processor is for the acquisition.
+  const auto alone = [](const std::stop_token&) {
+    calib::linear::keep_parts_on_this_thread();
+    return true;
+  };
+  worker_.run(alone, [](bool) {});
+}
 
 DaemonApp::~DaemonApp() { stop(); }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <unistd.h>
 #include <utility>
 
 #include <boost/asio/executor_work_guard.hpp>
@@ -22,12 +21,7 @@ namespace mgtd::daemon::store {
 
 class Worker {
  public:
-  /// `nice`: by how much more than this thread its jobs, and the threads that they begin, give way to others
-  /// where processors are short (nice(2)).
-  explicit Worker(boost::asio::io_context& home, int nice = 0) : home_(home) {
-    // On Linux the value is that of the calling thread, not of its process.
-    if (nice != 0) boost::asio::post(pool_, [nice] { [[maybe_unused]] const int now = ::nice(nice); });
-  }
+  explicit Worker(boost::asio::io_context& home) : home_(home) {}
   ~Worker() {
     stop_.request_stop();
     pool_.join();

@@ -49,6 +49,18 @@ TEST(Parts, OfAPartAreDoneByItsThreadInTheirOrder) {
   }
 }
 
+TEST(Parts, StayOnAThreadThatKeepsThem) {
+  std::set<std::thread::id> by;
+  std::thread::id own;
+  std::thread([&] {
+    own = std::this_thread::get_id();
+    keep_parts_on_this_thread();
+    for (int i = 0; i < 2; ++i)
+      for_each_part(50, [&](std::size_t) { by.insert(std::this_thread::get_id()); });
+  }).join();
+  EXPECT_EQ(by, std::set{own});
+}
+
 TEST(Parts, WhatOneThrowsIsThrownAndNoneIsBegunAfterwards) {
   constexpr std::size_t kMany = 1'000'000;
   for (const std::size_t bad : {0U, 1U, 5U}) {

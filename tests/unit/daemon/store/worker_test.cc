@@ -2,7 +2,6 @@
 #include "daemon/store/worker.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <memory>
 #include <stdexcept>
@@ -43,25 +42,6 @@ TEST(Worker, InputAndResultAreMovedNeverShared) {
   io.run();
   ASSERT_NE(result, nullptr);
   EXPECT_EQ(*result, 42);
-}
-
-TEST(Worker, ItsJobsGiveWayToTheLiveThread) {
-  const auto nice_of_this_thread = [] { return ::getpriority(PRIO_PROCESS, 0); };
-  const int live = nice_of_this_thread();
-  if (live == 19) GTEST_SKIP() << "there is no higher nice value";
-  boost::asio::io_context io(1);
-  Worker worker(io, 1);
-  int of_job = 0, of_its_thread = 0;
-  worker.run(
-      [&](std::stop_token) {
-        std::thread([&] { of_its_thread = nice_of_this_thread(); }).join();
-        return nice_of_this_thread();
-      },
-      [&](int value) { of_job = value; });
-  io.run();
-  EXPECT_EQ(of_job, live + 1);
-  EXPECT_EQ(of_its_thread, live + 1);
-  EXPECT_EQ(nice_of_this_thread(), live);
 }
 
 /// A computation that fails in a way nobody thought of must not end the acquisition.
