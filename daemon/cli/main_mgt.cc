@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -142,6 +143,10 @@ int main(int argc, char** argv) {
         session.json || std::find(words.begin(), words.end(), std::string_view("--json")) != words.end();
     const auto unknown = unknown_command(app);
     return mgtd::daemon::cli::report(session, unknown ? *unknown : wrong_words(app, error));
+  } catch (const std::bad_alloc&) {
+    return mgtd::daemon::cli::report(
+        session, {mgtd::ErrorCode::io, "there is not enough memory for this",
+                  "end other programs, raise the limit of this one (ulimit -v), or give it fewer poses"});
   }
   return session.exit_code;
 }

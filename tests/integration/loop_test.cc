@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "proto/error.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 
@@ -116,6 +117,22 @@ TEST_F(Loop, ARefusalHasItsRemedyAndChangesNothing) {
   EXPECT_EQ(mgt({"drop", kEffect, run_file()}).exit_code, 1);
   EXPECT_THAT(ask({"model", run_file()}).at("history"), IsEmpty());
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes
+TEST_F(Loop, TooLittleMemoryIsAnErrorWithARemedy) {
+  std::ofstream table(file("long.csv"));
+  table << "pose,s1_x_nT,s1_y_nT,s1_z_nT,f_nT\n";
+  for (int k = 0; k < 100'000; ++k) table << k << ",30000,20000,34641,50000\n";
+  table.close();
+  const Finished fit =
+      run_program({"/bin/sh", "-c", "ulimit -v 150000; OPENBLAS_NUM_THREADS=1 exec \"$0\" fit \"$1\"",
+                   program("mgt"), file("long.csv")},
+                  ".");
+  EXPECT_EQ(fit.exit_code, exit_code(ErrorCode::io)) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("there is not enough memory for this"));
+  EXPECT_THAT(fit.err, HasSubstr("raise the limit of this one"));
+}
+#endif
 
 TEST_F(Loop, AFormulaIsExaminedKeptAndUsedByItsName) {
   const Finished define =
