@@ -40,6 +40,7 @@ void add_thread(const std::function<void()>& work, std::vector<std::future<void>
 std::size_t threads() {
   constexpr std::size_t kMost = 2;  // with four, half as much memory again
   constexpr rlim_t kAddressSpaceEach = 500'000'000;
+  if (in_a_part) return 1;
   cpu_set_t allowed;
   rlimit memory{};
   if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return 1;
@@ -52,7 +53,7 @@ std::size_t threads() {
 void keep_parts_on_this_thread() { in_a_part = true; }
 
 void for_each_part(std::size_t count, const std::function<void(std::size_t)>& work) {
-  const std::size_t together = in_a_part ? 1 : std::min(count, threads());
+  const std::size_t together = std::min(count, threads());
   std::atomic<std::size_t> next{0};
   const auto take = [&] {
     const InAPart mark;

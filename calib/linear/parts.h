@@ -9,10 +9,10 @@
 /// order: the digits of a result do not depend on how many threads there are. The threads end with the call.
 namespace mgtd::calib::linear {
 
-/// Threads that parts are given to: as many as the processors that this process may use (`taskset` narrows
-/// them), and no more than two, since each holds matrices of its own. Where the address space is bounded
-/// (RLIMIT_AS), one for each 500 MB of it: OpenBLAS takes 128 MB of it for each thread, and where it gets
-/// none it asks again without end.
+/// Threads that parts are given to: within a part one, else as many as the processors that this process may
+/// use (`taskset` narrows them), and no more than two, since each holds matrices of its own. Where the
+/// address space is bounded (RLIMIT_AS), one for each 500 MB of it: OpenBLAS takes 128 MB of it for each
+/// thread, and where it gets none it asks again without end.
 [[nodiscard]] std::size_t threads();
 
 /// Calls `work` with 0, 1, ... count - 1, each once, in any order, from several threads; returns when all are

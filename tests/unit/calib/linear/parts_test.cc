@@ -38,6 +38,7 @@ TEST(Parts, OfAPartAreDoneByItsThreadInTheirOrder) {
   std::vector<std::set<std::thread::id>> threads(4);
   for_each_part(4, [&](std::size_t i) {
     threads[i].insert(std::this_thread::get_id());
+    EXPECT_EQ(linear::threads(), 1U);
     for_each_part(5, [&](std::size_t j) {
       order[i].push_back(j);
       threads[i].insert(std::this_thread::get_id());
@@ -55,6 +56,7 @@ TEST(Parts, StayOnAThreadThatKeepsThem) {
   std::thread([&] {
     own = std::this_thread::get_id();
     keep_parts_on_this_thread();
+    EXPECT_EQ(threads(), 1U);
     for (int i = 0; i < 2; ++i)
       for_each_part(50, [&](std::size_t) { by.insert(std::this_thread::get_id()); });
   }).join();
