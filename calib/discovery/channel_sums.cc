@@ -12,16 +12,16 @@
 namespace mgtd::calib::discovery {
 namespace tests = criticism::tests;
 
-double length_left(double left2, double about_mean2, double whole2, double share) {
+double one_over_length_left(double left2, double about_mean2, double whole2, double share) {
   const double least = std::max(share * share * about_mean2, kRounding * kRounding * whole2);
   return left2 > least && left2 > 0 ? 1 / std::sqrt(std::max(left2, 1e-300)) : 0;
 }
 
-Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
-                            const Eigen::VectorXd& whole2, double share) {
+Eigen::VectorXd one_over_length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
+                                     const Eigen::VectorXd& whole2, double share) {
   Eigen::VectorXd out(left2.size());
   for (Eigen::Index i = 0; i < out.size(); ++i)
-    out[i] = length_left(left2[i], about_mean2[i], whole2[i], share);
+    out[i] = one_over_length_left(left2[i], about_mean2[i], whole2[i], share);
   return out;
 }
 
@@ -81,12 +81,12 @@ Eigen::MatrixXd unit_rows(const fit::joint::JointProblem& problem, const fit::jo
 
 }  // namespace
 
-const Eigen::VectorXd& ChannelSums::Model::before_of(int c, int d) const {
+const Eigen::VectorXd& ChannelSums::Linearised::before_of(int c, int d) const {
   const auto low = static_cast<std::size_t>(std::min(c, d)), high = static_cast<std::size_t>(std::max(c, d));
   return before[low][high - low];
 }
 
-Eigen::MatrixXd ChannelSums::Model::spread(int c, const Eigen::MatrixXd& g) const {
+Eigen::MatrixXd ChannelSums::Linearised::spread(int c, const Eigen::MatrixXd& g) const {
   const Eigen::Index block = projection->whitener().pose_rows();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows.rows(), g.cols());
   for (Eigen::Index k = 0; k < g.rows(); ++k) {
@@ -99,7 +99,7 @@ Eigen::MatrixXd ChannelSums::Model::spread(int c, const Eigen::MatrixXd& g) cons
   return out;
 }
 
-Eigen::MatrixXd ChannelSums::Model::on_channel(int c, const Eigen::MatrixXd& X) const {
+Eigen::MatrixXd ChannelSums::Linearised::on_channel(int c, const Eigen::MatrixXd& X) const {
   const Eigen::Index block = projection->whitener().pose_rows(), poses = rows.rows() / block;
   Eigen::MatrixXd out(poses, X.cols());
   for (Eigen::Index k = 0; k < poses; ++k) {
@@ -113,14 +113,14 @@ Eigen::MatrixXd ChannelSums::Model::on_channel(int c, const Eigen::MatrixXd& X) 
   return out;
 }
 
-Scores ChannelSums::Model::by_channel(const Eigen::MatrixXd& X) const {
+Scores ChannelSums::Linearised::by_channel(const Eigen::MatrixXd& X) const {
   const Eigen::MatrixXd back = projection->whitener().apply_transposed(X) / unit;
   Scores out;
   for (int c = 0; c < rows.cols(); ++c) out.push_back(on_channel(c, back));
   return out;
 }
 
-void ChannelSums::Model::set_before() {
+void ChannelSums::Linearised::set_before() {
   const tests::Whitener& whitener = projection->whitener();
   const Eigen::Index poses = rows.rows() / whitener.pose_rows();
   const Eigen::MatrixXd white = whitener.apply(rows) / unit;
@@ -139,11 +139,11 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
       channels_(fit.problem.channels()),
       correlated_(residual.whitener().rho() != 0 || residual.whitener().wanders()),
       absorbed_share_(std::max(kAbsorbedShare, residual.absorbed())) {
-  Model model{.projection = residual.projection(),
-              .unit = residual.unit(),
-              .rows = unit_rows(fit.problem, fit.state),
-              .channels = channels_,
-              .before = {}};
+  Linearised model{.projection = residual.projection(),
+                   .unit = residual.unit(),
+                   .rows = unit_rows(fit.problem, fit.state),
+                   .channels = channels_,
+                   .before = {}};
   total_ = static_cast<int>(model.rows.cols());
   if (!correlated_) model.set_before();
   const Eigen::Index n = poses_ * residual.rows_per_pose(), p = residual.basis().cols();
@@ -153,19 +153,19 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
     taken_.emplace_back(on_channel.leftCols(p).transpose());
     scores_.emplace_back(on_channel.col(p));
   }
-  model_ = std::make_shared<const Model>(std::move(model));
+  fit_ = std::make_shared<const Linearised>(std::move(model));
   for (int c = 0; c < total_; ++c)
     before_of_one_.emplace_back(before_projection(c, c, Eigen::VectorXd::Ones(poses_)));
 }
 
 Eigen::MatrixXd ChannelSums::whitened(int c, const Eigen::MatrixXd& g) const {
-  return model_->projection->whitener().apply(model_->spread(c, g)) / model_->unit;
+  return fit_->projection->whitener().apply(fit_->spread(c, g)) / fit_->unit;
 }
 
 Eigen::MatrixXd ChannelSums::before_projection(int c, int d, const Eigen::MatrixXd& g) const {
-  if (!correlated_) return model_->before_of(c, d).asDiagonal() * g;
-  const tests::Whitener& whitener = model_->projection->whitener();
-  return model_->on_channel(c, whitener.apply_transposed(whitened(d, g))) / model_->unit;
+  if (!correlated_) return fit_->before_of(c, d).asDiagonal() * g;
+  const tests::Whitener& whitener = fit_->projection->whitener();
+  return fit_->on_channel(c, whitener.apply_transposed(whitened(d, g))) / fit_->unit;
 }
 
 Eigen::MatrixXd ChannelSums::before_projection(const std::vector<int>& channels,
@@ -173,7 +173,7 @@ Eigen::MatrixXd ChannelSums::before_projection(const std::vector<int>& channels,
   std::vector<Eigen::Index> first{0};
   for (const Eigen::MatrixXd& of_channel : g) first.push_back(first.back() + of_channel.cols());
   if (correlated_) {
-    const tests::Whitener& whitener = model_->projection->whitener();
+    const tests::Whitener& whitener = fit_->projection->whitener();
     Eigen::MatrixXd white(poses_ * whitener.rows_per_pose(), first.back());
     for (std::size_t a = 0; a < g.size(); ++a)
       white.middleCols(first[a], g[a].cols()) = whitened(channels[a], g[a]);
@@ -183,7 +183,7 @@ Eigen::MatrixXd ChannelSums::before_projection(const std::vector<int>& channels,
   for (std::size_t a = 0; a < g.size(); ++a)
     for (std::size_t b = 0; b <= a; ++b)
       out.block(first[b], first[a], g[b].cols(), g[a].cols()) =
-          g[b].transpose() * model_->before_of(channels[a], channels[b]).asDiagonal() * g[a];
+          g[b].transpose() * fit_->before_of(channels[a], channels[b]).asDiagonal() * g[a];
   out.triangularView<Eigen::StrictlyLower>() = out.transpose();
   return out;
 }
@@ -197,7 +197,7 @@ Eigen::MatrixXd ChannelSums::taken_up(int c, const Eigen::MatrixXd& g) const {
 
 Eigen::MatrixXd ChannelSums::taken_up_by_model(int c, const Eigen::MatrixXd& g) const {
   const Eigen::MatrixXd& taken = taken_[static_cast<std::size_t>(c)];
-  Eigen::MatrixXd out(model_->projection->basis().cols(), g.cols());
+  Eigen::MatrixXd out(fit_->projection->basis().cols(), g.cols());
   linear::set_product(taken.topRows(out.rows()), g, out);
   return out;
 }
@@ -213,7 +213,7 @@ Eigen::MatrixXd ChannelSums::products(int c, int d) const {
     return before_projection(c, d, Eigen::MatrixXd::Identity(poses_, poses_)) -
            linear::transposed_product(of_c, of_d);
   Eigen::MatrixXd out = linear::transposed_product(-of_c, of_d);
-  out.diagonal() += model_->before_of(c, d);
+  out.diagonal() += fit_->before_of(c, d);
   return out;
 }
 
@@ -241,17 +241,17 @@ double ChannelSums::by_residual(const LawOnChannels& a) const {
 std::vector<Eigen::VectorXd> ChannelSums::by_channel(const LawOnChannels& a) const {
   Eigen::VectorXd taken = Eigen::VectorXd::Zero(taken_.front().rows());
   std::vector<Eigen::VectorXd> out(taken_.size(), Eigen::VectorXd::Zero(poses_));
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(model_->rows.rows(), 1);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(fit_->rows.rows(), 1);
   for (std::size_t d = 0; d < a.size(); ++d) {
     if (a[d].size() == 0) continue;
     const int channel = static_cast<int>(d);
     taken += taken_[d] * a[d];
-    if (correlated_) rows += model_->spread(channel, a[d]);
+    if (correlated_) rows += fit_->spread(channel, a[d]);
     for (std::size_t c = 0; !correlated_ && c < out.size(); ++c)
-      out[c] += model_->before_of(static_cast<int>(c), channel).cwiseProduct(a[d]);
+      out[c] += fit_->before_of(static_cast<int>(c), channel).cwiseProduct(a[d]);
   }
   if (correlated_) {
-    const Scores before = model_->by_channel(model_->projection->whitener().apply(rows) / model_->unit);
+    const Scores before = fit_->by_channel(fit_->projection->whitener().apply(rows) / fit_->unit);
     for (std::size_t c = 0; c < out.size(); ++c) out[c] = before[c];
   }
   for (std::size_t c = 0; c < out.size(); ++c) out[c] -= taken_[c].transpose() * taken;
@@ -280,14 +280,14 @@ void ChannelSums::take_out(const LawOnChannels& law) {
 
 Eigen::MatrixXd ChannelSums::noise(Eigen::Index count, std::mt19937_64& random) const {
   std::normal_distribution<double> normal;
-  return Eigen::MatrixXd::NullaryExpr(model_->projection->basis().rows(), count,
+  return Eigen::MatrixXd::NullaryExpr(fit_->projection->basis().rows(), count,
                                       [&] { return normal(random); });
 }
 
 Scores ChannelSums::scores_of(Eigen::MatrixXd noise) const {
-  const Eigen::MatrixXd& basis = model_->projection->basis();
+  const Eigen::MatrixXd& basis = fit_->projection->basis();
   linear::subtract_product(basis, linear::transposed_product(basis, noise), noise);
-  Scores out = model_->by_channel(noise.topRows(poses_ * model_->projection->whitener().rows_per_pose()));
+  Scores out = fit_->by_channel(noise.topRows(poses_ * fit_->projection->whitener().rows_per_pose()));
   for (const TakenOut& law : taken_out_) {
     Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(noise.cols());
     for (std::size_t c = 0; c < law.law.size(); ++c)
@@ -302,7 +302,7 @@ ChannelSums::Moments ChannelSums::moments(int channel) const {
     const Eigen::MatrixXd G = products(channel, channel);
     return {.trace = G.trace(), .squares = G.squaredNorm()};
   }
-  const Eigen::VectorXd& h = model_->before_of(channel, channel);
+  const Eigen::VectorXd& h = fit_->before_of(channel, channel);
   const Eigen::MatrixXd& U = taken_[static_cast<std::size_t>(channel)];
   // |diag(h) - U'U|^2 without the matrix of poses by poses.
   const Eigen::ArrayXd own = U.colwise().squaredNorm().transpose().array();

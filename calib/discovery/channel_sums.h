@@ -34,9 +34,10 @@ inline constexpr double kRounding = 1e-6;
 
 /// One over the length that columns have left after projection; zero for absorbed ones, that have less than
 /// `share` left. Squares of lengths: what is left, what there was without the mean, and all of it.
-[[nodiscard]] double length_left(double left2, double about_mean2, double whole2, double share);
-[[nodiscard]] Eigen::VectorXd length_left(const Eigen::VectorXd& left2, const Eigen::VectorXd& about_mean2,
-                                          const Eigen::VectorXd& whole2, double share);
+[[nodiscard]] double one_over_length_left(double left2, double about_mean2, double whole2, double share);
+[[nodiscard]] Eigen::VectorXd one_over_length_left(const Eigen::VectorXd& left2,
+                                                   const Eigen::VectorXd& about_mean2,
+                                                   const Eigen::VectorXd& whole2, double share);
 
 /// Combinations of unit columns that are orthonormal after projection, one a column. `left`: their products
 /// after projection, `before`: without it, lower triangles. Where `share` is that of noisy readings a
@@ -124,7 +125,7 @@ class ChannelSums {
 
  private:
   /// What stays as it is when a law is taken out; copies share it.
-  struct Model {
+  struct Linearised {
     std::shared_ptr<const criticism::tests::Projection> projection;
     double unit;           ///< Residual::unit
     Eigen::MatrixXd rows;  ///< E_c: of one unit on each channel, at every pose
@@ -146,7 +147,7 @@ class ChannelSums {
   int channels_, total_;
   bool correlated_;
   double absorbed_share_;
-  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Linearised> fit_;
   std::vector<Eigen::VectorXd> before_of_one_;
   std::vector<Eigen::MatrixXd> taken_;  ///< U_c
   Scores scores_;

@@ -69,7 +69,8 @@ Result<FittedLaw> fitted_law(const Columns& columns, const Place& place, LawInpu
     length2.segment(at, count) -= ((*values)[a].transpose() * of_one).cwiseAbs2() / of_one.sum();
   }
   const Eigen::MatrixXd A = B - taken_up.transpose() * taken_up;
-  const Eigen::VectorXd scale = length_left(A.diagonal(), length2, B.diagonal(), sums.absorbed_share());
+  const Eigen::VectorXd scale =
+      one_over_length_left(A.diagonal(), length2, B.diagonal(), sums.absorbed_share());
   const Eigen::MatrixXd V =
       scale.asDiagonal() * combinations(scale.asDiagonal() * A * scale.asDiagonal(),
                                         scale.asDiagonal() * B * scale.asDiagonal(), sums.absorbed_share());

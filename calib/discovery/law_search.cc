@@ -34,8 +34,8 @@ Eigen::MatrixXd LawSearch::basis_on(const FormulaProducts& products, std::size_t
   if (m.count == 1) {
     const double whole2 = before(0, 0), by_one = products.by_one(c)[m.first];
     const double scale =
-        length_left(products.left(i, c, c)(0, 0) - by_laws.col(m.first).squaredNorm(),
-                    whole2 - by_one * by_one / products.of_one(c), whole2, sums_.absorbed_share());
+        one_over_length_left(products.left(i, c, c)(0, 0) - by_laws.col(m.first).squaredNorm(),
+                             whole2 - by_one * by_one / products.of_one(c), whole2, sums_.absorbed_share());
     return Eigen::MatrixXd::Constant(1, scale == 0 ? 0 : 1, scale);
   }
   const auto laws = by_laws.middleCols(m.first, m.count);
@@ -44,7 +44,7 @@ Eigen::MatrixXd LawSearch::basis_on(const FormulaProducts& products, std::size_t
       before.diagonal().array() -
       products.by_one(c).segment(m.first, m.count).transpose().array().square() / products.of_one(c);
   const Eigen::VectorXd scale =
-      length_left(left.diagonal(), about_mean2, before.diagonal(), sums_.absorbed_share());
+      one_over_length_left(left.diagonal(), about_mean2, before.diagonal(), sums_.absorbed_share());
   return scale.asDiagonal() * combinations(scale.asDiagonal() * left * scale.asDiagonal(),
                                            scale.asDiagonal() * before * scale.asDiagonal(),
                                            sums_.absorbed_share());

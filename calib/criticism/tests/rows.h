@@ -8,10 +8,11 @@
 
 /// The linearised joint fit as rows, a block of JointProblem::pose_rows() for each pose, each row divided by
 /// its standard deviation (of the cross, with twelve readings):
-///     0..11  readings     12  scalar reference     13..15  attitude; without table angles 13 is the idle
-///     slot
-/// and with a vector reference 13..15 its components and 16 the idle slot, or, where it stands beside the
-/// table, 13..15 the attitude and 16 its size. Where no pose knows its attitude 13 is the last.
+///     0..11   readings
+///     12      scalar reference
+///     13..15  attitude; without table angles 13 is the idle slot, and the last
+/// With a vector reference 13..15 are its components and 16 is the idle slot; where it stands beside the
+/// table, 13..15 are the attitude and 16 is its size.
 ///
 /// An observation that was left out is a row of zeros. Nothing is eliminated here: see whitener.h.
 namespace mgtd::calib::criticism::tests {
