@@ -12,12 +12,13 @@
 namespace mgtd::daemon::store {
 namespace {
 
-/// Runs `sql` and makes one T of every row.
+/// Runs `sql` and makes one T of every row, of which so many are expected.
 template <class T, class Make>
-Result<std::vector<T>> rows(const Database& db, std::string_view sql, Make make) {
+Result<std::vector<T>> rows(const Database& db, std::string_view sql, Make make, std::size_t expected = 0) {
   auto statement = db.prepare(sql);
   if (!statement) return tl::unexpected(statement.error());
   std::vector<T> found;
+  found.reserve(expected);
   for (;;) {
     const auto row = statement->step();
     if (!row) return tl::unexpected(row.error());
@@ -77,8 +78,11 @@ Result<PoseTable> RunFile::poses() const {
   const std::size_t sensors = header_.options.geometry.sensors();
   std::string columns = "number, \"set\", t_utc_ns";
   for (const PoseColumn& c : pose_columns(sensors)) columns += ", " + c.name;
-  auto found = rows<Pose>(*db_, "SELECT " + columns + " FROM pose ORDER BY ord",
-                          [sensors](const Statement& row) { return pose_of(row, sensors); });
+  const auto count = pose_count();
+  if (!count) return tl::unexpected(count.error());
+  auto found = rows<Pose>(
+      *db_, "SELECT " + columns + " FROM pose ORDER BY ord",
+      [sensors](const Statement& row) { return pose_of(row, sensors); }, *count);
   if (!found) return tl::unexpected(found.error());
   PoseTable table{std::move(*found), path_.string(), {}};
   std::map<int, Pose*> by_number;

@@ -164,9 +164,10 @@ class Readings {
   /// Direction of the reading as its sensor sees it, offset taken out.
   [[nodiscard]] Eigen::Vector3d direction(const fit::joint::JointPose& pose, int sensor) const {
     const auto fitted = fitted_nT_.find(pose.pose);
-    const fit::joint::Channels& y_nT = fitted == fitted_nT_.end() ? pose.y_nT : fitted->second;
-    return (y_nT.segment<3>(3 * sensor) - state_.sensors[static_cast<std::size_t>(sensor)].offset_nT)
-        .normalized();
+    const Eigen::Vector3d y_nT = fitted == fitted_nT_.end()
+                                     ? Eigen::Vector3d(pose.y_nT.segment<3>(3 * sensor))
+                                     : Eigen::Vector3d(fitted->second.segment<3>(3 * sensor));
+    return (y_nT - state_.sensors[static_cast<std::size_t>(sensor)].offset_nT).normalized();
   }
   [[nodiscard]] Eigen::Vector3d before_nT(const fit::joint::JointPose& pose, int sensor) const {
     const auto fitted = fitted_nT_.find(pose.previous);

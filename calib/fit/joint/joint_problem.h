@@ -57,10 +57,12 @@ struct JointPose {
   const Pose* pose{nullptr};
   const Pose* previous{nullptr};
   double t_h{0};
-  Channels y_nT;
-  Channels weight;  ///< 1/sd of each reading; 0 leaves it out (outlier node)
+  // As long as the array has channels, not as the largest array has: a recording has tens of thousands of
+  // poses, and a fit copies them many times.
+  Eigen::VectorXd y_nT;
+  Eigen::VectorXd weight;  ///< 1/sd of each reading; 0 leaves it out (outlier node)
   /// Part of that variance: of effects that remember the way of the table (memory_variance.h). Empty: none.
-  Channels memory_nT2{};
+  Eigen::VectorXd memory_nT2{};
   double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
   /// The field as a known vector: in frame P, or, of a reference beside the table, in its own axes.
   Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};
