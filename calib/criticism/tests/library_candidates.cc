@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calib/criticism/tests/candidate_effect.h"
+#include "calib/effects/laws/run_memory.h"
 #include "calib/effects/laws/site_dipole.h"
 #include "calib/effects/laws/site_step.h"
 #include "calib/effects/library/effect_family.h"
@@ -119,7 +120,8 @@ std::string without_name(std::string message, std::string_view name) {
 
 CandidateEffects library_candidates(const PoseTable& table, const std::vector<effects::EffectPtr>& left_out) {
   CandidateEffects out;
-  const effects::EffectContext context{.table = &table, .offset_nT = {}};
+  effects::EffectContext context{.table = &table, .offset_nT = {}};
+  if (const auto memory = effects::laws::run_memory(context)) context.memory = *memory;
   for (const effects::library::EffectFamily& family : effects::library::effect_families()) {
     if (std::any_of(left_out.begin(), left_out.end(),
                     [&](const effects::EffectPtr& e) { return e->name() == family.name; }))

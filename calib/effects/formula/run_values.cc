@@ -14,13 +14,14 @@ using Source = FormulaName::Source;
 }  // namespace
 
 Result<RunValues> RunValues::of(const EffectContext& context) {
-  auto memory = laws::run_memory(context);
+  const auto memory = laws::run_memory(context);
   if (!memory) return tl::unexpected(memory.error());
   const poses::RunTime time = poses::RunTime::of(*context.table);
   std::vector<double> t_h;
   for (const Pose& pose : context.table->poses) t_h.push_back(time.hours(pose));
   std::vector<PerSensor<Eigen::Vector3d>> v_nT;
-  for (laws::RememberedPose& pose : memory->poses) v_nT.push_back(std::move(pose.v_nT));
+  v_nT.reserve((*memory)->poses.size());
+  for (const laws::RememberedPose& pose : (*memory)->poses) v_nT.push_back(pose.v_nT);
   return RunValues(*context.table, std::move(t_h), std::move(v_nT));
 }
 

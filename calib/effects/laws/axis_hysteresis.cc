@@ -36,8 +36,15 @@ struct PlayOnRun {
 
 }  // namespace
 
+PlayOfRun::PlayOfRun(const RunMemory& run)
+    : sensors_(run.poses.empty() ? 0 : run.poses.front().v_nT.size()),
+      plays_(run.poses.size() * sensors_ * 3) {
+  row_.reserve(run.poses.size());
+  for (std::size_t k = 0; k < run.poses.size(); ++k) row_[run.poses[k].pose] = k;
+}
+
 PlayOfRun play_before(const RunMemory& run, double w) {
-  PlayOfRun out;
+  PlayOfRun out(run);
   const std::size_t sensors = run.poses.empty() ? 0 : run.poses.front().v_nT.size();
   PerSensor<std::array<PlayOnRun, 3>> axes(sensors);
   const auto each = [&](const auto& visit) {
@@ -51,10 +58,8 @@ PlayOfRun play_before(const RunMemory& run, double w) {
     for (std::size_t k = 0; k < way.size(); ++k)
       each(
           [&](std::size_t i, int a, PlayOnRun& axis) { axis.move(turning_point(way, k, i, a), w, &way[k]); });
-    PerSensor<std::array<Play, 3>>& before = out[pose.pose];
-    before.resize(sensors);
     each([&](std::size_t i, int a, PlayOnRun& axis) {
-      Play& play = before[i][static_cast<std::size_t>(a)];
+      Play& play = out.at(pose.pose, static_cast<int>(i), a);
       play.p = axis.p;
       axis.move(pose.v_nT[i][a], w, nullptr);
       if (axis.set_by == nullptr) return;
@@ -101,7 +106,7 @@ Result<Hysteresis> Hysteresis::on_run(const EffectContext& context) const {
   const auto run = run_memory(context);
   if (!run) return tl::unexpected(run.error());
   Hysteresis out = *this;
-  out.before = std::make_shared<const PlayOfRun>(play_before(*run, w.value_or(kDefaultWidth)));
+  out.before = std::make_shared<const PlayOfRun>(play_before(**run, w.value_or(kDefaultWidth)));
   return out;
 }
 

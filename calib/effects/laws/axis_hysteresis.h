@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <unordered_map>
+#include <vector>
 
 #include "calib/effects/laws/axis_nonlinearity.h"
 #include "calib/effects/laws/live_memory.h"
@@ -31,7 +32,26 @@ struct Play {
   double sd_per_rad{0};
 };
 /// By pose number, sensor and axis.
-using PlayOfRun = std::unordered_map<int, PerSensor<std::array<Play, 3>>>;
+class PlayOfRun {
+ public:
+  /// At rest, for each pose that is remembered.
+  explicit PlayOfRun(const RunMemory& run);
+  [[nodiscard]] bool contains(int pose) const { return row_.contains(pose); }
+  /// Throws std::out_of_range for a pose of another run.
+  [[nodiscard]] const Play& at(int pose, int sensor, int axis) const {
+    return plays_[place(pose, sensor, axis)];
+  }
+  [[nodiscard]] Play& at(int pose, int sensor, int axis) { return plays_[place(pose, sensor, axis)]; }
+
+ private:
+  [[nodiscard]] std::size_t place(int pose, int sensor, int axis) const {
+    return (row_.at(pose) * sensors_ + static_cast<std::size_t>(sensor)) * 3 + static_cast<std::size_t>(axis);
+  }
+
+  std::size_t sensors_;
+  std::unordered_map<int, std::size_t> row_;
+  std::vector<Play> plays_;
+};
 [[nodiscard]] PlayOfRun play_before(const RunMemory& run, double w);
 
 /// The play on a stream: the lowest and the highest it can be. Both end at one value after a swing of 2w.
@@ -84,7 +104,7 @@ struct Hysteresis {
 
  private:
   [[nodiscard]] const Play& before_pose(const Pose& pose, int sensor, int axis) const {
-    return before->at(pose.number)[static_cast<std::size_t>(sensor)][static_cast<std::size_t>(axis)];
+    return before->at(pose.number, sensor, axis);
   }
 };
 

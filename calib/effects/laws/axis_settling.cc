@@ -95,8 +95,9 @@ Result<Settling> Settling::on_run(const EffectContext& context) const {
   if (!run) return tl::unexpected(run.error());
   std::unordered_map<int, std::optional<SlowAtStop>> at_stop;
   Stops stops(tau_s.value_or(kDefaultTau_s));
-  for (std::size_t k = 0; k < run->poses.size(); ++k)
-    at_stop[run->poses[k].pose] = stops.at(context.table->poses[k], run->poses[k]);
+  const std::vector<RememberedPose>& poses = (*run)->poses;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    at_stop[poses[k].pose] = stops.at(context.table->poses[k], poses[k]);
   Settling out = *this;
   out.before = std::make_shared<const decltype(at_stop)>(std::move(at_stop));
   return out;

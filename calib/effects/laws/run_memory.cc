@@ -86,7 +86,8 @@ SensorReadings RunMemory::sd_nT_per_rad(const RememberedWayPoint& point) const {
   return by_sensor(variance.cwiseSqrt());
 }
 
-Result<RunMemory> run_memory(const EffectContext& context) {
+Result<std::shared_ptr<const RunMemory>> run_memory(const EffectContext& context) {
+  if (context.memory) return context.memory;
   if (context.table == nullptr || context.table->poses.empty())
     return fail(ErrorCode::refused, "an effect with a memory needs the poses before each pose");
   const PoseTable& table = *context.table;
@@ -95,6 +96,7 @@ Result<RunMemory> run_memory(const EffectContext& context) {
   if (!table.path.empty()) out.by_angles = ReadingsByAngles::of(table);
   auto point = table.path.begin();
   AngleDeviation before;
+  out.poses.reserve(table.poses.size());
   for (std::size_t k = 0; k < table.poses.size(); ++k) {
     const Pose& pose = table.poses[k];
     RememberedPose remembered{.pose = pose.number, .v_nT = less(pose.y_nT, offset_nT), .on_the_way = {}};
@@ -111,7 +113,7 @@ Result<RunMemory> run_memory(const EffectContext& context) {
     }
     out.poses.push_back(std::move(remembered));
   }
-  return out;
+  return std::make_shared<const RunMemory>(std::move(out));
 }
 
 }  // namespace mgtd::calib::effects::laws

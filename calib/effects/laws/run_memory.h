@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -48,7 +49,7 @@ struct RunMemory {
   [[nodiscard]] SensorReadings sd_nT_per_rad(const RememberedWayPoint& point) const;
 };
 
-/// Refuses a context without poses.
-[[nodiscard]] Result<RunMemory> run_memory(const EffectContext& context);
+/// That of the context where it has one. Refuses a context without poses.
+[[nodiscard]] Result<std::shared_ptr<const RunMemory>> run_memory(const EffectContext& context);
 
 }  // namespace mgtd::calib::effects::laws

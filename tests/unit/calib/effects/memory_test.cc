@@ -21,13 +21,13 @@ TEST(Hysteresis, PlayFollowsByHand) {
 /// A turn that goes beyond both dwells leaves its mark only where the path was kept.
 TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   PoseTable table = testing::run_with({}, {.noise_nT = 0, .table_sd_rad = 0}, 4);
-  const auto dwells = laws::play_before(*laws::run_memory({.table = &table, .offset_nT = {}}), 0.05);
+  const auto dwells = laws::play_before(**laws::run_memory({.table = &table, .offset_nT = {}}), 0.05);
   const Pose &from = table.poses[50], &to = table.poses[51];
   const TableAngles over{*from.azimuth_rad + 2, *from.pitch_rad + 1.5, *from.roll_rad};
   table.path = {{*from.t_s + 20, over}};
   const auto with_path = laws::run_memory({.table = &table, .offset_nT = {}});
   ASSERT_TRUE(with_path);
-  const laws::RememberedPose& remembered = with_path->poses[51];
+  const laws::RememberedPose& remembered = (*with_path)->poses[51];
   ASSERT_EQ(remembered.on_the_way.size(), 1U);
   const testing::Scene scene;
   const Eigen::Vector3d B_S = scene.f_nT * scene.direction;
@@ -36,9 +36,9 @@ TEST(Hysteresis, FollowsThePathBetweenTheDwells) {
   // Noise-free dwells of a rig linear in the field: the map by angles is exact, the offset good to a
   // nanotesla.
   EXPECT_LT((remembered.on_the_way[0].v_nT[0] - v).norm(), 5);
-  const auto path = laws::play_before(*with_path, 0.05);
-  EXPECT_NE(path.at(to.number)[0][0].p, dwells.at(to.number)[0][0].p);
-  EXPECT_EQ(path.at(from.number)[0][0].p, dwells.at(from.number)[0][0].p);
+  const auto path = laws::play_before(**with_path, 0.05);
+  EXPECT_NE(path.at(to.number, 0, 0).p, dwells.at(to.number, 0, 0).p);
+  EXPECT_EQ(path.at(from.number, 0, 0).p, dwells.at(from.number, 0, 0).p);
 }
 
 fit::joint::JointOptions options_with(const char* spec) {
