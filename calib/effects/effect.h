@@ -119,6 +119,12 @@ class Effect {
                     std::span<double> out) const = 0;
   virtual void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,
                     std::span<Jet> out) const = 0;
+  /// Of a term that is linear in its coefficients its derivatives by them, which need no jets: out[o +
+  /// outputs j] that of output o by c[j], every one of them. False, and `out` as it was, for another term.
+  [[nodiscard]] virtual bool shapes(const Conditions&, int /*sensor*/, std::span<const double> /*in*/,
+                                    std::span<double> /*out*/) const {
+    return false;
+  }
   /// What the term does not know of the way of the table before a pose, where it remembers that: a standard
   /// deviation for each radian of the table's accuracy, of one axis; c as term() has it.
   [[nodiscard]] virtual double sd_nT_per_rad(const Conditions&, int /*sensor*/, int /*axis*/,

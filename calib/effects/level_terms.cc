@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/effects/level_terms.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -51,6 +52,7 @@ void LevelTerms::sum(const Conditions& at, int sensor, std::span<const double> i
   for (const Entry& entry : entries_) {
     if (!entry.effect->missing(at.pose).empty()) continue;
     const std::span<const int> active = entry.effect->active(at, sensor);
+    if (add_at_zero(entry, at, sensor, in, active, coefficients, total)) continue;
     std::array<Jet, kJetSlots> c;
     std::array<Jet, kMaxTermOutputs> out;
     for (std::size_t j = 0; j < active.size(); ++j) {
@@ -69,6 +71,22 @@ void LevelTerms::sum(const Conditions& at, int sensor, std::span<const double> i
       }
     }
   }
+}
+
+bool LevelTerms::add_at_zero(const Entry& entry, const Conditions& at, int sensor, std::span<const double> in,
+                             std::span<const int> active, const Eigen::VectorXd& coefficients,
+                             TermSum& total) {
+  const auto is_zero = [&](int j) { return coefficients[entry.first + j] == 0; };
+  if (!std::all_of(active.begin(), active.end(), is_zero)) return false;
+  const auto outputs = static_cast<std::size_t>(total.value.size());
+  std::array<double, std::size_t{kMaxTermOutputs} * kMaxActive> by_coefficient;
+  if (!entry.effect->shapes(at, sensor, in, {by_coefficient.data(), outputs * active.size()})) return false;
+  for (std::size_t j = 0; j < active.size(); ++j) {
+    for (std::size_t o = 0; o < outputs; ++o)
+      total.d_coefficient(static_cast<Eigen::Index>(o), entry.first + active[j]) +=
+          by_coefficient[o + outputs * j];
+  }
+  return true;
 }
 
 TermValue LevelTerms::value(const Conditions& at, int sensor, std::span<const double> in,

@@ -41,6 +41,12 @@ class LevelTerms {
     const Effect* effect;
     int first;  ///< of its coefficients in the vector of all
   };
+  /// Where all coefficients are zero a linear term has derivatives by them and nothing else; false elsewhere,
+  /// and where the term is not linear.
+  [[nodiscard]] static bool add_at_zero(const Entry& entry, const Conditions& at, int sensor,
+                                        std::span<const double> in, std::span<const int> active,
+                                        const Eigen::VectorXd& coefficients, TermSum& total);
+
   Level level_;
   std::vector<Entry> entries_;
 };

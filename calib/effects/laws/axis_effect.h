@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -80,6 +81,18 @@ class AxisEffect final : public EffectOf<AxisEffect<Law>> {
     } else {
       return 0;
     }
+  }
+
+  [[nodiscard]] bool shapes(const Conditions& at, int sensor, std::span<const double> v,
+                            std::span<double> out) const override {
+    std::fill(out.begin(), out.end(), 0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int first = scale_.first(sensor, axis);
+      for (int j = 0; first >= 0 && j < Law::kPerAxis; ++j)
+        out[static_cast<std::size_t>(axis + 3 * (first + j))] =
+            law_.template shape<double>(at, sensor, axis, v, j);
+    }
+    return true;
   }
 
   template <class S>

@@ -121,6 +121,31 @@ TEST(EffectLibrary, DerivativesAreThoseOfTheEquation) {
   EXPECT_GT(caught, checked * 4 / 5);
 }
 
+/// To the last bit: a model evaluated by one way or the other is the same.
+TEST(EffectLibrary, ShapesAreTheDerivativesByCoefficientsThatAreZero) {
+  const PoseTable table = rich_table();
+  std::mt19937_64 rng(4);
+  for (const EffectPtr& e : everything(table)) {
+    Point p = point_of(*e, table.poses[20], table.poses[19], kNoMeans, rng);
+    std::fill(p.c.begin(), p.c.end(), 0.0);
+    const auto outputs = static_cast<std::size_t>(outputs_of(e->level()));
+    std::vector<double> shapes(outputs * p.c.size(), 1e9);
+    ASSERT_EQ(e->shapes(p.at, p.sensor, p.in, shapes), e->level() == Level::axis) << e->spec();
+    if (e->level() != Level::axis) continue;
+    std::vector<Jet> in, c, out(outputs);
+    int slot = 0;
+    for (const double x : p.in) in.push_back(Jet::variable(x, slot++));
+    for (const double x : p.c) c.push_back(Jet::variable(x, slot++));
+    e->term(p.at, p.sensor, in, c, out);
+    for (std::size_t o = 0; o < outputs; ++o) {
+      EXPECT_EQ(out[o].v, 0) << e->spec();
+      EXPECT_TRUE((out[o].d.head(static_cast<Eigen::Index>(in.size())) == 0).all()) << e->spec();
+      for (std::size_t j = 0; j < c.size(); ++j)
+        EXPECT_EQ(shapes[o + outputs * j], out[o].d[static_cast<Eigen::Index>(in.size() + j)]) << e->spec();
+    }
+  }
+}
+
 TEST(EffectLibrary, WithoutCoefficientsEveryTermVanishes) {
   const PoseTable table = rich_table();
   std::mt19937_64 rng(2);
