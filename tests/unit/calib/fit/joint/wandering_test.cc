@@ -4,14 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "calib/fit/joint/joint_report.h"
+#include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/wandering_estimate.h"
+#include "calib/linear/parts.h"
 #include "tests/blind/wandering_offsets.h"
 #include "tests/rig/slow_noise.h"
+#include "tests/unit/calib/fit/simulated_poses.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -53,6 +58,38 @@ WanderingEstimate estimate_of(const PoseTable& table) {
   const auto fit = fit_joint(table, joint_options({}));
   EXPECT_TRUE(fit);
   return estimate_wandering(SlowLikelihood(slow_sums(*fit)));
+}
+
+/// An offset that is shifted by e times one of its terms u changes chi-square, where everything else follows,
+/// by 2 e u'r + e^2 u'u. In a run that is summed in several parts none of them may be missing.
+TEST(SlowSums, AreWhatChiSquareDoesWhenAnOffsetIsShifted) {
+  const PoseTable table = testing::simulate({.rig = testing::table3_rig(), .noise_nT = 0.1}, 36, 2400, 5);
+  const auto fit = fit_joint(table, {});
+  ASSERT_TRUE(fit) << fit.error().text();
+  ASSERT_GT(linear::parts_of_poses(fit->problem.poses.size()), 2U);
+  const SlowSums sums = slow_sums(*fit);
+  const WanderingTerms terms = wandering_terms(fit->problem);
+  struct Shift {
+    Eigen::Index channel, term;
+  };
+  for (const Shift shift : {Shift{1, 0}, Shift{8, 3}}) {
+    const auto chi2_shifted_by = [&](double nT) {
+      JointProblem shifted = fit->problem;
+      for (JointPose& pose : shifted.poses) {
+        pose.y_nT[shift.channel] += nT * terms.at(pose.t_h)[shift.term];
+      }
+      const auto solution = solve(shifted, fit->state);
+      return solution ? solution->reduced.cost.total() : std::nan("");
+    };
+    const Eigen::Index column = shift.channel * kWanderingTerms + shift.term;
+    // So many nanotesla that the square of a shift is as large as what is left of noise.
+    const double e = std::sqrt(sums.chi2 / sums.gram(column, column));
+    const double more = chi2_shifted_by(e), less = chi2_shifted_by(-e);
+    EXPECT_NEAR((more + less) / 2 - sums.chi2, sums.chi2, 1e-4 * sums.chi2) << column;
+    EXPECT_NEAR((more - less) / (4 * e), sums.by_residual[column],
+                1e-3 * std::sqrt(sums.gram(column, column)))
+        << column;
+  }
 }
 
 /// A tenth of a nanotesla from pose to pose, half a minute apart.
