@@ -77,7 +77,7 @@ WanderingAlternative::WanderingAlternative(const fit::joint::JointFit& bare)
       theta_(fit::joint::Channels::Zero(problem_.channels())) {
   if (!estimate_.any()) return;
   theta_ = relative(estimate_, likelihood_);
-  likelihood_.climb(theta_, kClimbs);
+  likelihood_.climb(theta_, kClimbs, fit::joint::Channels::Zero(theta_.size()));
   deviance_ = likelihood_.deviance(theta_);
 }
 
@@ -98,7 +98,7 @@ WanderingAlternative::Ratio WanderingAlternative::ratio(const Eigen::MatrixXd& r
   double least =
       std::min({deviance(theta_), deviance(low), deviance(fit::joint::Channels::Zero(problem_.channels()))});
   for (fit::joint::Channels theta : {theta_, low}) {
-    with.climb(theta, kClimbs);
+    with.climb(theta, kClimbs, fit::joint::Channels::Zero(theta.size()));
     least = std::min(least, deviance(theta));
   }
   return {.R = deviance_ - least, .instead = deviance_ - deviance(low), .rank = static_cast<int>(Q.cols())};

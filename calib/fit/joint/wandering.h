@@ -7,15 +7,18 @@
 
 /// Offsets that wander: the slow noise of a fluxgate, which lasts from one pose to the next.
 ///
-/// Over a run of length T the offset of channel c has the expansion
+/// Over a run of length T the offset of channel c, less its mean over the run, has the expansion
 ///
-///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j independent, normal,
+///     o(t) = sum_j z_j sqrt(2) cos(j pi (t - t0) / T),   z_j normal
 ///
-///     walk     sd of z_j = a_c sqrt(T) / (j pi):  var[o(t) - o(s)] = a_c^2 |t - s|, exactly (Karhunen-Loeve)
-///     flicker  sd of z_j = a_c / sqrt(j):         one-sided spectral density a_c^2 / f; a term has the
-///                                                 power of the band 1 / (2 T) about its frequency j / (2 T)
+///     walk     z_j independent, sd a_c sqrt(T) / (j pi): var[o(t) - o(s)] = a_c^2 |t - s|, exactly
+///              (Karhunen-Loeve)
+///     flicker  one-sided spectral density a_c^2 / f, so var[o(t) - o(s)] = 2 a_c^2 ln|t - s| + const:
+///              var z_j is close to a_c^2 / j, the power of the band 1 / (2 T) about the frequency j / (2 T),
+///              and 23 % less for j = 1; every second z_j is correlated a little. wandering.cc has the
+///              integrals.
 ///
-/// Its mean over the run is the offset of the model. The first kWanderingTerms tell how far an offset
+/// That mean is the offset of the model. The first kWanderingTerms tell how far an offset
 /// wanders. Sizes a_c in nT per root hour (walk) or in nT/sqrt(Hz) at 1 Hz (flicker), times in hours. It is
 /// noise: no calibration holds it.
 namespace mgtd::calib::fit::joint {
@@ -28,18 +31,21 @@ enum class SlowSpectrum { walk, flicker };
 /// The terms of an offset of unit size over one run.
 class WanderingTerms {
  public:
-  /// From the first pose to the last. `poses`: how many; flicker that is faster than they follow each other
-  /// is part of the noise of each.
+  /// From the first pose to the last. `poses`: how many.
   WanderingTerms(double from_h, double to_h, SlowSpectrum spectrum = SlowSpectrum::walk,
-                 std::size_t poses = 0)
-      : from_h_(from_h), length_h_(to_h - from_h), spectrum_(spectrum), poses_(poses) {}
+                 std::size_t poses = 0);
   /// False where the poses have no time, or one.
   [[nodiscard]] bool any() const { return length_h_ > 0; }
-  /// sd(z_j) sqrt(2) cos(j pi (t - t0) / T), j from 1, nT.
+  /// What independent coefficients of unit variance are multiplied by at a time, nT: L' times the cosines, L
+  /// L' the covariance of all z_j. From that of flicker the mean power of the faster terms is taken, which is
+  /// part of the white noise from pose to pose.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> at(double t_h) const;
   [[nodiscard]] double to_h() const { return from_h_ + length_h_; }
-  /// Of the offset less its mean over the run, at either end, nT^2: T / 3 for a walk; for flicker the sum of
-  /// 2/j up to the number of poses, or up to kWanderingTerms where there are fewer.
+  /// Covariance of those coefficients with the offset at the end of the run, nT.
+  [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> by_end() const;
+  /// Of the offset at either end, nT^2: T / 3 for a walk; for flicker 1 - ln(d / T), of its mean over a dwell
+  /// d, for which half of the time from pose to pose is taken (of kWanderingTerms poses where there are
+  /// fewer).
   [[nodiscard]] double variance_at_end() const;
   /// Of the terms beyond the last, mean over the run, nT^2.
   [[nodiscard]] double variance_beyond() const;
@@ -47,7 +53,9 @@ class WanderingTerms {
  private:
   double from_h_, length_h_;
   SlowSpectrum spectrum_;
-  std::size_t poses_;
+  double poses_;
+  Eigen::Matrix<double, kWanderingTerms, kWanderingTerms> factor_ =
+      Eigen::Matrix<double, kWanderingTerms, kWanderingTerms>::Zero();  ///< L
 };
 
 }  // namespace mgtd::calib::fit::joint

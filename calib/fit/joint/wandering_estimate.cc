@@ -18,8 +18,10 @@ namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr int kJ = kWanderingTerms;
-/// Of the pooled rate, squared: an axis of an array that wanders is never taken as still.
-constexpr double kLeastShare = 0.1;
+/// What one axis of a place says of its own size is known to a fifth at best. It is weighed with the size of
+/// the whole place as if that were so many squares more: axes of one make differ by a quarter, one sd. Else
+/// an axis that happens to be calm is stated far too well.
+constexpr double kAlikeFreedom = 8;
 constexpr int kClimbs = 12;
 /// Values of a rate that the likelihood is averaged over: four a decade of its square.
 constexpr double kLowest = 0.1, kHighest = 1e7;
@@ -123,11 +125,16 @@ Asked ask(const SlowSums& s, const Place& place) {
   return out;
 }
 
+/// The channels that wander, each with the size of its place, and how many squares that size counts as.
+struct Grown {
+  Channels theta, alike;
+};
+
 /// Places one after the other, each given those before, while one is worth saying.
-Channels grow(const SlowSums& sums, WanderingEstimate& out) {
+Grown grow(const SlowSums& sums, WanderingEstimate& out) {
   constexpr int kMost = 6;
   const int channels = sums.channels();
-  Channels theta = Channels::Zero(channels);
+  Channels theta = Channels::Zero(channels), alike = theta;
   SlowSums left = sums;
   const std::vector<Place> all = places(channels);
   for (int round = 0; round < kMost; ++round) {
@@ -142,11 +149,14 @@ Channels grow(const SlowSums& sums, WanderingEstimate& out) {
     out.evidence += found.evidence;
     if (best->name == "all") out.where.clear();
     out.where.push_back(best->name);
-    for (const int c : best->channels) theta[c] += found.theta;
+    for (const int c : best->channels) {
+      theta[c] += found.theta;
+      alike[c] = best->channels.size() > 1 ? kAlikeFreedom : 0;
+    }
     if (best->name == "all") break;
     left = given(sums, theta);
   }
-  return theta;
+  return {theta, alike};
 }
 
 /// What the slow terms add to the normal equations, nuisances eliminated: one column a channel and term.
@@ -321,7 +331,8 @@ double SlowLikelihood::quadratic(const Channels& theta) const { return At(sums_,
 
 double SlowLikelihood::noise_variance(const Channels& theta) const { return quadratic(theta) / sums_.dof; }
 
-void SlowLikelihood::climb(Channels& theta, int steps) const {
+void SlowLikelihood::climb(Channels& theta, int steps, const Channels& alike) const {
+  const Channels start = theta;
   for (int step = 0; step < steps; ++step) {
     const At at(sums_, theta);
     if (at.columns.empty()) return;
@@ -336,25 +347,25 @@ void SlowLikelihood::climb(Channels& theta, int steps) const {
       trace[c] += (1 - inverse[k]) / (at.root[k] * at.root[k]);
     }
     for (Eigen::Index c = 0; c < theta.size(); ++c)
-      if (theta[c] > 0 && trace[c] > 0) theta[c] *= std::sqrt(squares[c] / sigma2 / trace[c]);
+      if (theta[c] > 0 && trace[c] > 0)
+        theta[c] *= std::sqrt((squares[c] / sigma2 + alike[c] * start[c] / (theta[c] * theta[c])) /
+                              (trace[c] + alike[c] / theta[c]));
   }
 }
 
 WanderingEstimate estimate_wandering(const SlowLikelihood& likelihood) {
   WanderingEstimate out;
   if (likelihood.sums().gram.size() == 0) return out;
-  Channels theta = grow(likelihood.sums(), out);
+  auto [theta, alike] = grow(likelihood.sums(), out);
   if (!out.any()) return out;
-  const double least = kLeastShare * theta.minCoeff();
-  likelihood.climb(theta, kClimbs);
-  theta = theta.cwiseMax(least);
+  likelihood.climb(theta, kClimbs, alike);
   const double sigma2 = likelihood.noise_variance(theta);
   out.size = (theta * sigma2).cwiseSqrt();
   out.noise_scale2 = sigma2;
   out.sd = WanderingRates::Zero(theta.size());
   for (Eigen::Index c = 0; c < theta.size(); ++c) {
     if (!(theta[c] > 0)) continue;
-    double freedom = 0;
+    double freedom = alike[c];
     for (int j = 0; j < kJ; ++j) {
       const double x = theta[c] * likelihood.sums().gram(c * kJ + j, c * kJ + j);
       freedom += std::pow(x / (1 + x), 2);
@@ -390,12 +401,12 @@ std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, co
   Eigen::MatrixXd errors = information->solve(slow_equations(fit.problem, fit.state, terms).by_fixed);
   Eigen::MatrixXd out = white.common * information->inverse() +
                         covariance_beside(fit.problem, fit.state, *information, white.beside);
-  const auto at_end = terms.at(terms.to_h());
+  const auto by_end = terms.by_end();
   for (int c = 0; c < fit.problem.channels(); ++c) {
     const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;
-    errors.row(offset).segment<kJ>(c * kJ) -= at_end.transpose();
+    errors.row(offset).segment<kJ>(c * kJ) -= by_end.transpose();
     errors.middleCols<kJ>(c * kJ) *= w.size[c];
-    out(offset, offset) += w.size[c] * w.size[c] * (terms.variance_at_end() - at_end.squaredNorm());
+    out(offset, offset) += w.size[c] * w.size[c] * (terms.variance_at_end() - by_end.squaredNorm());
   }
   return Eigen::MatrixXd(out + errors * errors.transpose());
 }

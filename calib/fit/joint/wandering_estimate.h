@@ -13,7 +13,8 @@
 /// With everything else of the model projected out, the residual r has covariance sigma^2 (I + sum_c theta_c
 /// U_c U_c'), U_c the terms of channel c for a walk or flicker of unit size. The sizes are those of the
 /// largest restricted likelihood (REML), in which sigma^2 is profiled: what a dwell says of the noise does
-/// not enter. The evidence is 2 ln of the odds against white noise, the likelihood averaged over the size,
+/// not enter. Channels of one place differ little in size: each is weighed with the size of its place. The
+/// evidence is 2 ln of the odds against white noise, the likelihood averaged over the size,
 /// less 2 ln of the number of places that were asked (all channels, one of four sensors, one of twelve
 /// channels).
 ///
@@ -55,8 +56,9 @@ class SlowLikelihood {
   [[nodiscard]] double quadratic(const Channels& theta) const;
   /// sigma^2 at theta.
   [[nodiscard]] double noise_variance(const Channels& theta) const;
-  /// Steps uphill over the channels that wander already (minorise-maximise: never downhill).
-  void climb(Channels& theta, int steps) const;
+  /// Steps uphill over the channels that wander already (minorise-maximise: never downhill). The start counts
+  /// as `alike` squares more of each channel: ln theta has the prior -alike/2 (ln theta + start / theta).
+  void climb(Channels& theta, int steps, const Channels& alike) const;
 
  private:
   SlowSums sums_;
@@ -82,10 +84,10 @@ inline constexpr double kWanderingEvidence = 9.2;
 
 /// Covariance of the fixed block of an ordinary fit whose offsets wander, each offset as it is at the end of
 /// the run, where the calibration begins to be used. The estimates are those of least squares; with S the
-/// information of the fixed block, X its products with the slow terms, D their variance and E their values at
-/// the end of the run in the rows of the offsets,
-///     sigma^2 S^-1 + S^-1 W S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms beyond the last add to
-///     the offsets,
+/// information of the fixed block, X its products with the slow terms, D the squares of their sizes and E
+/// their covariance with the offsets at the end of the run, in the rows of these,
+///     sigma^2 S^-1 + S^-1 W S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms do not hold of the offsets
+///     at the end,
 /// W what the terms beyond the last, which look white from pose to pose, add to the covariance of the normal
 /// equations. How much further an offset wanders after the run is not in it. Empty where S is not positive
 /// definite.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -39,17 +40,56 @@ TEST(Wandering, ItsTermsHoldNearlyTheWholeWalk) {
   EXPECT_NEAR(square.sum() / (3.0 / 6), 0.963, 0.002);
 }
 
-/// The mean over a run is no part of the noise; of 1/f noise every octave has the same power.
-TEST(Wandering, EveryOctaveOfFlickerHasTheSamePower) {
-  const WanderingTerms terms(0, 2, SlowSpectrum::flicker, 100);
-  Eigen::VectorXd square = Eigen::VectorXd::Zero(kWanderingTerms);
-  constexpr int kSteps = 3000;
-  for (int k = 0; k < kSteps; ++k) square += terms.at(2 * (k + 0.5) / kSteps).cwiseAbs2() / kSteps;
-  EXPECT_NEAR(square[0], 1, 1e-6);
-  EXPECT_NEAR(square[7], 1.0 / 8, 1e-6);
-  double to_100 = 0;
-  for (int j = 1; j <= 100; ++j) to_100 += 2.0 / j;
-  EXPECT_NEAR(terms.variance_at_end(), to_100, 1e-9);
+/// 1/f noise of the simulated rig, of unit size, in dwells of 15 s every 30 s: the products of its cosines,
+/// and those with the last dwell, are what the terms say, over and above what the faster noise adds to each.
+TEST(Wandering, FlickerHasTheTermsOfTheRigs) {
+  constexpr int kPoses = 200, kRuns = 2000;
+  constexpr double kDwell_s = 15, kLength_h = 2 * kDwell_s * kPoses / 3600;
+  const WanderingTerms terms(0, kLength_h, SlowSpectrum::flicker, kPoses);
+  Eigen::MatrixXd cosines(kPoses, kWanderingTerms), at(kWanderingTerms, kPoses);
+  for (int k = 0; k < kPoses; ++k) {
+    const double share = (k + 0.5) / kPoses;
+    for (int j = 1; j <= kWanderingTerms; ++j)
+      cosines(k, j - 1) = std::numbers::sqrt2 * std::cos(j * std::numbers::pi * share) / kPoses;
+    at.col(k) = terms.at(share * kLength_h);
+  }
+  const Eigen::MatrixXd factor = (at * cosines).transpose();
+  Eigen::MatrixXd expected = factor * factor.transpose();
+  expected.diagonal().array() += terms.variance_beyond() / kPoses;
+  const Eigen::VectorXd expected_by_end = factor * terms.by_end();
+
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(kWanderingTerms, kWanderingTerms);
+  Eigen::VectorXd by_end = Eigen::VectorXd::Zero(kWanderingTerms), offset(kPoses);
+  double end = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    offset.setZero();
+    for (rig::SlowProcess part : rig::flicker(1)) {
+      part.begin(random, normal);
+      for (double& o : offset) {
+        o += part.mean_over(kDwell_s, random, normal);
+        part.advance(kDwell_s, random, normal);
+      }
+    }
+    offset.array() -= offset.mean();
+    const Eigen::VectorXd z = cosines.transpose() * offset;
+    squares += z * z.transpose() / kRuns;
+    by_end += z * offset[kPoses - 1] / kRuns;
+    end += offset[kPoses - 1] * offset[kPoses - 1] / kRuns;
+  }
+  // Five standard deviations of a mean of so many products.
+  const double most = 5 / std::sqrt(kRuns);
+  for (int j = 0; j < kWanderingTerms; ++j) {
+    for (int m = 0; m <= j; ++m) {
+      const double sd = std::sqrt(expected(j, j) * expected(m, m)) * (j == m ? std::numbers::sqrt2 : 1);
+      EXPECT_NEAR(squares(j, m), expected(j, m), most * sd + 0.02 * expected(j, j)) << j << ' ' << m;
+    }
+    const double sd = std::sqrt(expected(j, j) * terms.variance_at_end());
+    EXPECT_NEAR(by_end[j], expected_by_end[j], most * sd) << j;
+  }
+  EXPECT_NEAR(end, terms.variance_at_end(), most * std::numbers::sqrt2 * terms.variance_at_end());
+  EXPECT_NEAR(expected(0, 0), 0.774, 0.02);
 }
 
 TEST(Wandering, NothingWandersWithoutTime) { EXPECT_FALSE(WanderingTerms(2, 2).any()); }
