@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/fit/joint/wandering_estimate.h"
+#include "calib/fit/joint/slow_sums.h"
 #include "calib/linear/product.h"
 
 namespace mgtd::calib::discovery {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calib/criticism/tests/wandering_alternative.h"
+#include "calib/fit/joint/wandering_covariance.h"
 #include "calib/linear/parts.h"
 #include "calib/stats/chi_square.h"
 

@@ -15,6 +15,7 @@
 #include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/profile_search.h"
 #include "calib/fit/joint/tensor_uncertainty.h"
+#include "calib/fit/joint/wandering_covariance.h"
 #include "calib/fit/two_step/two_step.h"
 #include "calib/linear/propagation.h"
 

@@ -3,15 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/cholesky.h"
-#include "calib/linear/parts.h"
 #include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::fit::joint {
@@ -159,168 +156,7 @@ Grown grow(const SlowSums& sums, WanderingEstimate& out) {
   return {theta, alike};
 }
 
-/// What the slow terms add to the normal equations, nuisances eliminated: one column a channel and term.
-struct SlowEquations {
-  Eigen::MatrixXd by_fixed;  ///< fixed block x slow
-  Eigen::MatrixXd gram;      ///< slow x slow
-  Eigen::VectorXd by_residual;
-
-  SlowEquations& operator+=(const SlowEquations& other) {
-    by_fixed += other.by_fixed, gram += other.gram, by_residual += other.by_residual;
-    return *this;
-  }
-};
-
-/// Rows of the readings by the fixed block, weighted, of one pose.
-Eigen::MatrixXd fixed_rows(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(problem.channels(), problem.fixed());
-  for (int i = 0; i < problem.sensors(); ++i)
-    out.block<3, sensor::kSensorParameters>(3 * i, sensor::kSensorParameters * i) =
-        b.linear.d_sensor.middleRows<3>(3 * i);
-  out.rightCols(b.linear.d_global.cols()) = b.linear.d_global;
-  return pose.weight.asDiagonal() * out;
-}
-
-/// What the readings of one pose do once the nuisances have followed, each moved by its standard deviation.
-struct FollowedPose {
-  sensor::ChannelCovariance readings;  ///< to the readings themselves: a projection
-  Eigen::MatrixXd by_fixed;            ///< to the normal equations of the fixed block: fixed x channels
-  Channels residual;
-};
-
-FollowedPose followed(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b) {
-  const Eigen::Index channels = problem.channels();
-  const Eigen::LLT<Eigen::Matrix4d> H(b.H);
-  const sensor::ChannelColumns<kNuisances> solved = H.solve(b.N.transpose());
-  return {.readings = sensor::ChannelCovariance::Identity(channels, channels) - b.N * solved,
-          .by_fixed = fixed_rows(problem, pose, b).transpose() - b.U * solved,
-          .residual = b.residual - solved.transpose() * b.g};
-}
-
-/// The sum over all poses of what `add` adds to `nothing`.
-template <class Sum>
-Sum sum_over_followed(const JointProblem& problem, const JointState& state, const Sum& nothing,
-                      const auto& add) {
-  const PoseModel model(problem, state);
-  std::vector<Sum> parts(std::max<std::size_t>(1, linear::parts_of_poses(problem.poses.size())), nothing);
-  linear::for_each_poses(problem.poses.size(), [&](std::size_t part, std::size_t from, std::size_t to) {
-    PoseBlocks b;
-    for (std::size_t k = from; k < to; ++k) {
-      assemble(problem, model, state, k, Blocks::border, b);
-      add(problem.poses[k], followed(problem, problem.poses[k], b), parts[part]);
-    }
-  });
-  for (std::size_t part = 1; part < parts.size(); ++part) parts.front() += parts[part];
-  return std::move(parts.front());
-}
-
-SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
-                             const WanderingTerms& terms) {
-  const Eigen::Index channels = problem.channels(), m = channels * kJ;
-  const SlowEquations nothing{.by_fixed = Eigen::MatrixXd::Zero(problem.fixed(), m),
-                              .gram = Eigen::MatrixXd::Zero(m, m),
-                              .by_residual = Eigen::VectorXd::Zero(m)};
-  const auto add = [&](const JointPose& pose, const FollowedPose& f, SlowEquations& out) {
-    const auto w = pose.weight.asDiagonal();
-    const sensor::ChannelCovariance M = w * f.readings * w;
-    const Eigen::MatrixXd X = f.by_fixed * w;
-    const Channels r = w * f.residual;
-    const auto at = terms.at(pose.t_h);
-    for (int c = 0; c < channels; ++c) {
-      out.by_fixed.middleCols<kJ>(c * kJ) += X.col(c) * at.transpose();
-      out.by_residual.segment<kJ>(c * kJ) += r[c] * at;
-      for (int d = 0; d <= c; ++d) out.gram.block<kJ, kJ>(c * kJ, d * kJ) += M(c, d) * at * at.transpose();
-    }
-  };
-  SlowEquations out = sum_over_followed(problem, state, nothing, add);
-  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
-  return out;
-}
-
-/// Of the white noise, over that of the weights: what all readings have, and beside it by channel.
-struct WhiteNoise {
-  double common;
-  Channels beside;
-};
-
-/// From pose to pose the terms of a wandering offset beyond the last look white. Where the dwells say how
-/// large the white noise is at least, those terms account for what noise_scale2 has above it, as far as the
-/// size of the wandering asks for that.
-WhiteNoise white_noise(const JointFit& fit, const WanderingEstimate& w, const WanderingTerms& terms) {
-  const Eigen::Index channels = fit.problem.channels();
-  WhiteNoise out{w.noise_scale2, Channels::Zero(channels)};
-  const double least = 1 / (fit.noise_inflation * fit.noise_inflation);
-  if (!fit.sample_noise_nT || out.common <= least) return out;
-  // One size for all that wander: those of single channels are known to a fifth at best.
-  const Channels wanders = (w.size.array() > 0).cast<double>();
-  const double beyond_nT2 = w.size.squaredNorm() / wanders.sum() * terms.variance_beyond();
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(channels, 2);  // of what lies beyond, and of freedom
-  sums = sum_over_followed(fit.problem, fit.state, sums,
-                           [&](const JointPose& pose, const FollowedPose& f, Eigen::MatrixXd& sum) {
-                             sum.col(0) += beyond_nT2 * wanders.cwiseProduct(pose.weight.cwiseAbs2());
-                             sum.col(1) += f.readings.diagonal();
-                           });
-  const Channels beyond = sums.col(0) / static_cast<double>(fit.problem.poses.size()), freedom = sums.col(1);
-  const double mean = beyond.dot(freedom) / freedom.sum();
-  if (!(mean > 0)) return out;
-  const double share = std::min(1.0, (out.common - least) / mean);
-  out.common -= share * mean;
-  out.beside = share * beyond;
-  return out;
-}
-
-/// What the white noise of single channels adds to the covariance of the fixed block, pose by pose: a product
-/// of three matrices would lose what a coarse table knows of the common rotation.
-Eigen::MatrixXd covariance_beside(const JointProblem& problem, const JointState& state,
-                                  const linear::Cholesky& information, const Channels& beside) {
-  const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(problem.fixed(), problem.fixed());
-  if (!(beside.maxCoeff() > 0)) return nothing;
-  const Channels sd = beside.cwiseSqrt();
-  return sum_over_followed(
-      problem, state, nothing, [&](const JointPose&, const FollowedPose& f, Eigen::MatrixXd& out) {
-        const Eigen::MatrixXd errors = information.solve(Eigen::MatrixXd(f.by_fixed * sd.asDiagonal()));
-        out.noalias() += errors * errors.transpose();
-      });
-}
-
 }  // namespace
-
-SlowSums SlowSums::without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const {
-  return {.gram = gram - by_columns.transpose() * by_columns,
-          .by_residual = by_residual - by_columns.transpose() * r,
-          .chi2 = chi2 - r.squaredNorm(),
-          .dof = dof - static_cast<double>(r.size())};
-}
-
-SlowSums SlowSums::thinned(double per_effective) const {
-  if (per_effective == 1) return *this;
-  return {.gram = gram / per_effective,
-          .by_residual = by_residual / per_effective,
-          .chi2 = chi2 / per_effective,
-          .dof = dof / per_effective};
-}
-
-WanderingTerms wandering_terms(const JointProblem& problem, SlowSpectrum spectrum) {
-  const auto [first, last] =
-      std::minmax_element(problem.poses.begin(), problem.poses.end(),
-                          [](const JointPose& a, const JointPose& b) { return a.t_h < b.t_h; });
-  return {first->t_h, last->t_h, spectrum, problem.poses.size()};
-}
-
-SlowSums slow_sums(const JointFit& fit, SlowSpectrum spectrum) {
-  const WanderingTerms terms = wandering_terms(fit.problem, spectrum);
-  if (!terms.any()) return {};
-  const Reduced all = reduce(fit.problem, fit.state, 0);
-  const SlowEquations slow = slow_equations(fit.problem, fit.state, terms);
-  const auto information = linear::Cholesky::of(all.S);
-  if (!information) return {};
-  const Eigen::MatrixXd X = information->whiten(slow.by_fixed);
-  const Eigen::VectorXd y = information->whiten(all.g);
-  return {.gram = slow.gram - X.transpose() * X,
-          .by_residual = slow.by_residual - X.transpose() * y,
-          .chi2 = all.cost.total() - y.squaredNorm(),
-          .dof = fit.dof + fit.dof_table};
-}
 
 double SlowLikelihood::deviance(const Channels& theta) const {
   const At at(sums_, theta);
@@ -391,24 +227,6 @@ WanderingEstimate wandering_of(const JointFit& fit) {
     if (found.evidence > best.evidence) best = std::move(found);
   }
   return best.evidence < kWanderingEvidence + unequal_noise_evidence(fit) ? WanderingEstimate{} : best;
-}
-
-std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, const WanderingEstimate& w) {
-  const WanderingTerms terms = wandering_terms(fit.problem, w.spectrum);
-  const auto information = linear::Cholesky::of(reduce(fit.problem, fit.state, 0).S);
-  if (!information || !terms.any()) return std::nullopt;
-  const WhiteNoise white = white_noise(fit, w, terms);
-  Eigen::MatrixXd errors = information->solve(slow_equations(fit.problem, fit.state, terms).by_fixed);
-  Eigen::MatrixXd out = white.common * information->inverse() +
-                        covariance_beside(fit.problem, fit.state, *information, white.beside);
-  const auto by_end = terms.by_end();
-  for (int c = 0; c < fit.problem.channels(); ++c) {
-    const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;
-    errors.row(offset).segment<kJ>(c * kJ) -= by_end.transpose();
-    errors.middleCols<kJ>(c * kJ) *= w.size[c];
-    out(offset, offset) += w.size[c] * w.size[c] * (terms.variance_at_end() - by_end.squaredNorm());
-  }
-  return Eigen::MatrixXd(out + errors * errors.transpose());
 }
 
 }  // namespace mgtd::calib::fit::joint

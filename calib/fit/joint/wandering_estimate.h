@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "calib/fit/joint/joint_fit.h"
-#include "calib/fit/joint/wandering.h"
+#include "calib/fit/joint/slow_sums.h"
 
 /// Which offsets wander, and how fast, from the residual of a joint fit (wandering.h).
 ///
@@ -23,27 +21,6 @@
 /// A law that the model lacks and that follows time makes an offset wander too. This says how well wandering
 /// describes the residual, never that nothing better does: see criticism/tests/wandering_alternative.h.
 namespace mgtd::calib::fit::joint {
-
-/// Sums of the linearised fit, one column per channel and term, for an offset of unit size.
-struct SlowSums {
-  Eigen::MatrixXd gram;         ///< U' U
-  Eigen::VectorXd by_residual;  ///< U' r
-  double chi2{0};               ///< r' r
-  double dof{0};                ///< dimensions of r
-  [[nodiscard]] int channels() const { return static_cast<int>(gram.rows()) / kWanderingTerms; }
-  /// The sums of as many independent samples as the correlated ones are worth, `per_effective` of which count
-  /// as one: a walk is slow, and meets their noise as it is at low frequencies.
-  [[nodiscard]] SlowSums thinned(double per_effective) const;
-
-  /// With the directions of some orthonormal columns taken out: `by_columns` = Q'U, `r` = Q'r.
-  [[nodiscard]] SlowSums without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const;
-};
-
-/// The terms of the run of these poses.
-[[nodiscard]] WanderingTerms wandering_terms(const JointProblem& problem,
-                                             SlowSpectrum spectrum = SlowSpectrum::walk);
-/// Empty gram where the poses have no time.
-[[nodiscard]] SlowSums slow_sums(const JointFit& fit, SlowSpectrum spectrum = SlowSpectrum::walk);
 
 /// The restricted likelihood of relative variances theta_c = (size_c / sigma)^2.
 class SlowLikelihood {
@@ -81,18 +58,6 @@ inline constexpr double kWanderingEvidence = 9.2;
 /// is noisier than the others, or follows a law without time, looks like one that wanders. Less than this no
 /// walk is worth.
 [[nodiscard]] double unequal_noise_evidence(const JointFit& fit);
-
-/// Covariance of the fixed block of an ordinary fit whose offsets wander, each offset as it is at the end of
-/// the run, where the calibration begins to be used. The estimates are those of least squares; with S the
-/// information of the fixed block, X its products with the slow terms, D the squares of their sizes and E
-/// their covariance with the offsets at the end of the run, in the rows of these,
-///     sigma^2 S^-1 + S^-1 W S^-1 + (S^-1 X - E) D (S^-1 X - E)' + what the terms do not hold of the offsets
-///     at the end,
-/// W what the terms beyond the last, which look white from pose to pose, add to the covariance of the normal
-/// equations. How much further an offset wanders after the run is not in it. Empty where S is not positive
-/// definite.
-[[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
-                                                                       const WanderingEstimate& wandering);
 
 /// What wanders in a fit and is worth saying, as the spectrum with the larger evidence has it:
 /// estimate_wandering() against unequal_noise_evidence().

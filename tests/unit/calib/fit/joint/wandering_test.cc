@@ -13,7 +13,7 @@
 
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/joint_solver.h"
-#include "calib/fit/joint/wandering_estimate.h"
+#include "calib/fit/joint/wandering_covariance.h"
 #include "calib/linear/parts.h"
 #include "tests/blind/wandering_offsets.h"
 #include "tests/rig/slow_noise.h"
@@ -90,6 +90,17 @@ TEST(Wandering, FlickerHasTheTermsOfTheRigs) {
   }
   EXPECT_NEAR(end, terms.variance_at_end(), most * std::numbers::sqrt2 * terms.variance_at_end());
   EXPECT_NEAR(expected(0, 0), 0.774, 0.02);
+}
+
+/// The noise from pose to pose is taken off the covariance of the terms, which must stay positive definite,
+/// and what they say of the end of the run must not be more than there is.
+TEST(Wandering, FlickerKeepsAPositiveCovarianceHoweverManyPoses) {
+  for (std::size_t poses = 0; poses < 30'000; poses += poses < 200 ? 1 : 997) {
+    const WanderingTerms terms(0, 1, SlowSpectrum::flicker, poses);
+    EXPECT_GT(terms.at(0.3).squaredNorm(), 0.1) << poses;  // not a number where there is no root
+    EXPECT_GT(terms.variance_at_end(), terms.by_end().squaredNorm()) << poses;
+    EXPECT_GE(terms.variance_beyond(), 0) << poses;
+  }
 }
 
 TEST(Wandering, NothingWandersWithoutTime) { EXPECT_FALSE(WanderingTerms(2, 2).any()); }
