@@ -5,7 +5,7 @@
 
 /// Replaces malloc, which operator new and Eigen both end in, in the whole test program by one that counts.
 /// To be included by one file of a program. The sanitizers bring their own malloc, and nothing is counted.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(MGTD_SANITIZED)
 #define MGTD_COUNTS_ALLOCATIONS 1
 #else
 #define MGTD_COUNTS_ALLOCATIONS 0

@@ -24,7 +24,7 @@ using boost::system::error_code;
 constexpr std::size_t kMostSaid = 65'536;
 
 /// The sanitizers reserve terabytes of addresses that they do not use.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef MGTD_SANITIZED
 constexpr bool kBoundMemory = false;
 #else
 constexpr bool kBoundMemory = true;
