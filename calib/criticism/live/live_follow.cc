@@ -120,20 +120,21 @@ double event_share_of(const Eigen::MatrixXd& y, double variance) {
   const auto d = static_cast<double>(y.cols());
   const double excess = y.squaredNorm() - d * variance * static_cast<double>(n - 1);
   if (excess <= 0) return 0;
-  Eigen::MatrixXd sums(y.cols(), n + 1);
-  sums.col(0).setZero();
-  for (Eigen::Index k = 0; k < n; ++k) sums.col(k + 1) = sums.col(k) + y.row(k).transpose();
-  const double best = sensor::over_rows<4>(y.cols(), [&](auto rows) {
-    double most = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = i + 1; j <= n && j - i < n; ++j) {
-        const auto inside = static_cast<double>(j - i);
-        const double weight = 1 / inside + 1 / (static_cast<double>(n) - inside);
-        most = std::max(most, weight * (sums.col(j).head(rows) - sums.col(i).head(rows)).squaredNorm());
-      }
-    }
-    return most;
-  });
+  Eigen::MatrixXd sums(n + 1, y.cols());
+  sums.row(0).setZero();
+  for (Eigen::Index k = 0; k < n; ++k) sums.row(k + 1) = sums.row(k) + y.row(k);
+  // All intervals of one length at a time.
+  double best = 0;
+  Eigen::ArrayXd squares(n);
+  for (Eigen::Index inside = 1; inside < n; ++inside) {
+    const Eigen::Index begins = n + 1 - inside;
+    auto square = squares.head(begins);
+    square.setZero();
+    for (Eigen::Index c = 0; c < y.cols(); ++c)
+      square += (sums.col(c).tail(begins) - sums.col(c).head(begins)).array().square();
+    const double weight = 1 / static_cast<double>(inside) + 1 / static_cast<double>(n - inside);
+    best = std::max(best, weight * square.maxCoeff());
+  }
   return std::clamp((best - d * variance) / excess, 0.0, 1.0);
 }
 
