@@ -126,13 +126,13 @@ async function running() {
   await look("run");
   await browser.run("for (const e of document.querySelectorAll('#course details')) e.open = true");
   await look("run-open");
-  rig.mgt("run", "finish");
+  rig.command("run", "finish");
   await is("document.querySelectorAll('#proposal button').length === 2", "the calibration that the run proposes");
   await look("proposed");
   await press("#proposal", "Reject");
   await look("reject");
   await browser.click("reason-cancel");
-  rig.mgt("calibrations", "accept", "latest", "--force", "--why", "the run was ended early");
+  rig.command("calibrations", "accept", "latest", "--force", "--why", "the run was ended early");
   earlier();
   await browser.click("tab-calibrations");
   await is("document.getElementById('calibration-list').innerText.includes('active') && document.querySelectorAll('#calibration-history svg').length === 4", "the calibrations and how they moved");
@@ -165,7 +165,7 @@ async function suspect() {
   const poses = join(scratch, "cool.csv"), cal = join(scratch, "cool.json");
   execFileSync(join(bin, "mgt-rig"), ["table", "--rig", "table6", "-o", poses]);
   execFileSync(join(bin, "mgt"), ["fit", poses, "-o", cal], { stdio: "ignore" });
-  rig.mgt("calibrations", "import", cal, "--accept");
+  rig.command("calibrations", "import", cal, "--accept");
   await browser.open(rig.ask("console").url, ...kSizes[0]);
   await is("document.getElementById('cards').innerText.includes('suspect')", "the calibration that is suspect");
   await look("suspect");
@@ -176,8 +176,7 @@ async function disturbed() {
   await another(`[rig]\nname = "disturbed"\nparameters = "table6"\n`);
   await browser.open(rig.ask("console").url, ...kSizes[0]);
   await browser.click("tab-run");
-  const begun = rig.mgt("run", "start", "--step", "20", "--random", "10", "--dwell-short", "8", "--dwell-long", "8", "--detach");
-  if (begun.status !== 0) throw new Error(`no run beside a magnet: ${begun.stderr}`);
+  rig.command("run", "start", "--step", "20", "--random", "10", "--dwell-short", "8", "--dwell-long", "8", "--detach");
   let near = 0;  // moved in every dwell, until the run has seen it
   await until(() => {
     const { state, pose } = rig.ask("run", "status");
@@ -185,7 +184,7 @@ async function disturbed() {
     return rig.ask("run", "course").disturbances.length > 0;
   }, "a disturbance");
   rig.magnet(0);
-  rig.mgt("run", "pause");
+  rig.command("run", "pause");
   await is("/Disturbances of the field: [1-9]/.test(document.getElementById('course').innerText) && document.getElementById('run-now').innerText.includes(': paused')", "the disturbance on the page");
   await look("disturbed");
 }
@@ -195,8 +194,7 @@ async function byHand() {
   await another(`[rig]\nname = "by hand"\nparameters = "table6"\n[table]\nhands = "table"\n`);
   await browser.open(rig.ask("console").url, ...kSizes[0]);
   await browser.click("tab-run");
-  const begun = rig.mgt("run", "start", "--random", "10", "--detach");
-  if (begun.status !== 0) throw new Error(`no run by hand: ${begun.stderr}`);
+  rig.command("run", "start", "--random", "10", "--detach");
   await is("!document.getElementById('run-asking').hidden", "what the run asks a hand to do");
   await look("asking");
 }
@@ -214,7 +212,7 @@ function earlier() {
     });
     writeFileSync(table, [[...head, "t_utc"], ...dated].map((line) => line.join(",")).join("\n") + "\n");
     execFileSync(join(bin, "mgt"), ["fit", table, "-o", cal], { stdio: "ignore" });
-    rig.mgt("calibrations", "import", cal);
+    rig.command("calibrations", "import", cal);
   }
 }
 

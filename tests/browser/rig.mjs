@@ -51,6 +51,11 @@ export class Rig {
     this.#daemon = null;
   }
   mgt(...words) { return spawnSync(join(this.#bin, "mgt"), ["--socket", join(this.#folder, "control.sock"), ...words], { encoding: "utf8", maxBuffer: 1e8 }); }
+  /** The same, where it has to succeed. */
+  command(...words) {
+    const done = this.mgt(...words);
+    if (done.status !== 0) throw new Error(`mgt ${words.join(" ")}: ${done.error ?? done.stderr}`);
+  }
   ask(...words) { return JSON.parse(this.mgt(...words, "--json").stdout); }
   fault(...words) {
     const done = spawnSync(join(this.#bin, "mgt-rig"), ["fault", join(this.#folder, "ports"), ...words], { encoding: "utf8" });

@@ -196,7 +196,7 @@ try {
   await because("it was parked there from the first pose on", "force");
   await agreed(`${of("calibration")}.innerText.includes("${run.proposed}")`, "the accepted calibration");
   holds("one that was rejected is accepted by force, with the reason", rig.ask("status").cal === run.proposed && listed().why.startsWith("it was parked"), listed());
-  rig.mgt("control", "break");
+  rig.command("control", "break");
   const refused = rig.mgt("calibrations", "reject", run.proposed, "--why", "in use");
   holds("what is in use is not rejected", refused.status !== 0 && refused.stderr.includes("only a proposal"), refused.stderr);
   await until(() => controls.run(`${of("calibration-list")}.innerText.includes("active")`), "the list of calibrations");
