@@ -24,7 +24,7 @@ if(MGTD_SANITIZE)
   target_compile_options(mgtd_options INTERFACE -fsanitize=${MGTD_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(mgtd_options INTERFACE -fsanitize=${MGTD_SANITIZE})
   # Eigen's templates pass pointers and references at every step, and checks of each keep the compiler from inlining
-  # them: seven times the time (docs/building.md). They stand where bytes become values; AddressSanitizer sees a null
+  # them: four times the time (docs/building.md). They stand where bytes become values; AddressSanitizer sees a null
   # pointer and an object that is overrun everywhere.
   if(MGTD_SANITIZE MATCHES "undefined" AND NOT MGTD_FUZZ)
     target_compile_options(mgtd_options INTERFACE

@@ -12,13 +12,13 @@
 /// A joint fit pose by pose, the nuisances of each pose (its attitude and field) eliminated.
 namespace mgtd::calib::fit::joint {
 
-/// What remains of a change of the readings of one pose, each by its standard deviation, once the nuisances
-/// have followed it. With N the rows of the readings by the nuisances, H = N'N and their prior, F the rows by
-/// the fixed block and U = F'N:
+/// One pose whose nuisances follow every change of its readings. Each row is divided by the standard
+/// deviation of its reading: N are the rows by the nuisances, F those by the fixed block, r the residual; U =
+/// F'N, g = N'r with the prior, H = N'N with the prior.
 struct FollowedPose {
-  sensor::ChannelCovariance readings;  ///< I - N H^-1 N', a projection
-  Eigen::MatrixXd by_fixed;            ///< F' - U H^-1 N': to the normal equations, fixed x channels
-  Channels residual;                   ///< of the readings, over their standard deviations
+  sensor::ChannelCovariance readings;  ///< I - N H^-1 N': what a change of the readings leaves of itself
+  Eigen::MatrixXd by_fixed;            ///< F' - U H^-1 N': what it adds to the normal equations of the fit
+  Channels residual;                   ///< r - N H^-1 g
 };
 
 [[nodiscard]] FollowedPose followed(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b);

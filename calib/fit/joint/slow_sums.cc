@@ -7,6 +7,7 @@
 #include "calib/linear/cholesky.h"
 
 namespace mgtd::calib::fit::joint {
+
 SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
                              const WanderingTerms& terms) {
   const Eigen::Index channels = problem.channels(), m = channels * kWanderingTerms;
