@@ -28,9 +28,9 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 World::World(Scenario scenario)
     : scenario_(std::move(scenario)),
       axes_{make_axis(scenario_), make_axis(scenario_), make_axis(scenario_)},
-      scalar_random_(noise_stream(scenario_.seed, 4)),
-      table_random_(noise_stream(scenario_.seed, 5)),
-      reference_random_(noise_stream(scenario_.seed, 6)) {
+      scalar_noise_{noise_stream(scenario_.seed, 4)},
+      reference_noise_{noise_stream(scenario_.seed, 6)},
+      table_random_(noise_stream(scenario_.seed, 5)) {
   for (const auto& effect : scenario_.effects) {
     effects_.push_back(effect->fresh());
     effects_.back()->begin(scenario_);
@@ -295,7 +295,7 @@ Eigen::Vector3d World::quiet_reference(double t_s) const {
 
 Eigen::Vector3d World::reference_noise() {
   Eigen::Vector3d out;
-  for (double& component : out) component = reference_normal_(reference_random_);
+  for (double& component : out) component = reference_noise_.next();
   return out;
 }
 

@@ -78,7 +78,7 @@ class World {
   /// Noisy total field at the centre, and without noise.
   [[nodiscard]] double read_scalar(double t_s);
   [[nodiscard]] double quiet_scalar(double t_s) const;
-  [[nodiscard]] double scalar_noise() { return normal_(scalar_random_); }
+  [[nodiscard]] double scalar_noise() { return scalar_noise_.next(); }
   /// What the vector reference reads, in its own axes, without noise; and what its noise is drawn from.
   [[nodiscard]] Eigen::Vector3d quiet_reference(double t_s) const;
   [[nodiscard]] Eigen::Vector3d reference_noise();
@@ -97,6 +97,13 @@ class World {
     double azimuth_deg{0};
     Eigen::Matrix3d R{Eigen::Matrix3d::Identity()};
     std::vector<Eigen::Vector3d> b_nT;
+  };
+
+  /// Standard normal numbers of one noise.
+  struct NormalDraws {
+    std::mt19937_64 random;
+    std::normal_distribution<double> normal{};
+    double next() { return normal(random); }
   };
 
   [[nodiscard]] const Moment& moment(double t_s) const;
@@ -129,8 +136,8 @@ class World {
   Eigen::Vector3d direction_;
   Eigen::Matrix3d mount_{Eigen::Matrix3d::Identity()};
   std::vector<SensorNoise> noise_;
-  std::mt19937_64 scalar_random_, table_random_, reference_random_;
-  std::normal_distribution<double> normal_, reference_normal_;
+  NormalDraws scalar_noise_, reference_noise_;
+  std::mt19937_64 table_random_;
   std::shared_ptr<const Motion> motion_;
   std::optional<Eigen::Vector3d> cage_nT_;
   double coil_share_{1};
