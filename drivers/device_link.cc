@@ -6,7 +6,7 @@
 namespace mgtd::drivers {
 
 LinkHealth DeviceLink::health() const {
-  LinkHealth out = life_.shown(device_->health());
+  LinkHealth out = status_.shown(device_->health());
   out.state_since = state_since_;
   return out;
 }
@@ -21,13 +21,13 @@ void DeviceLink::report_state(Stamp now) {
 }
 
 void DeviceLink::refused(const Error& why, Stamp now) {
-  life_.refused(why);
+  status_.refused(why);
   report_state(now);
 }
 
 void DeviceLink::opened(Stamp now) {
   open_ = true;
-  life_.opened();
+  status_.opened();
   tell_raw(Direction::opened, std::string_view(), now);
   device_->on_open(now);
   deliver(now);
@@ -43,12 +43,12 @@ void DeviceLink::tick(Stamp now) {
   tell_raw(Direction::tick, std::string_view(), now);
   device_->on_tick(now);
   deliver(now);
-  if (device_->health().state == LinkState::live) life_.live();
+  if (device_->health().state == LinkState::live) status_.live();
 }
 
 void DeviceLink::lost(const std::string& why, Stamp now) {
   open_ = false;
-  life_.lost(why);
+  status_.lost(why);
   tell_raw(Direction::closed, std::string_view(), now);
   device_->on_close(now);
   static_cast<void>(device_->take_output());
@@ -66,7 +66,7 @@ std::string DeviceLink::last_words(Stamp now) {
 
 void DeviceLink::closed(Stamp now) {
   open_ = false;
-  life_.ended();
+  status_.ended();
   tell_raw(Direction::closed, std::string_view(), now);
   device_->on_close(now);
 }
@@ -87,7 +87,7 @@ void DeviceLink::deliver(Stamp now) {
     std::vector<DeviceEvent> events = device_->take_events();
     if (!answers(health().state)) report_state(now);
     more = sent || !events.empty();
-    for (const DeviceEvent& event : events) life_.heard(event);
+    for (const DeviceEvent& event : events) status_.heard(event);
     if (!events.empty() && callbacks_.on_events) callbacks_.on_events(std::move(events), now);
   }
   delivering_ = false;

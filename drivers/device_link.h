@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/device.h"
-#include "drivers/link_life.h"
+#include "drivers/link_status.h"
 #include "proto/health.h"
 #include "proto/reading.h"
 
@@ -61,7 +61,7 @@ class DeviceLink {
   [[nodiscard]] bool is_open() const { return open_; }
   [[nodiscard]] bool wants_reopen() const { return device_->wants_reopen(); }
   /// Host time until the port is to be tried again.
-  [[nodiscard]] Duration next_wait() { return life_.next_wait(); }
+  [[nodiscard]] Duration next_wait() { return status_.next_wait(); }
   [[nodiscard]] Device& device() { return *device_; }
   [[nodiscard]] const Device& device() const { return *device_; }
   /// The device's own counts and state; while the port is closed, why it is.
@@ -80,7 +80,7 @@ class DeviceLink {
 
   std::shared_ptr<Device> device_;
   LinkCallbacks callbacks_;
-  LinkLife life_;
+  LinkStatus status_;
   bool open_{false};
   bool delivering_{false};
   LinkState reported_state_{LinkState::absent};

@@ -23,15 +23,15 @@ std::string read_serial(Settings& settings) {
   return serial;
 }
 
-Result<void> check_serial(std::string_view stated, std::string_view told) {
-  if (stated.empty() || stated == told) return {};
-  if (told.empty()) {
+Result<void> check_serial(std::string_view stated, std::string_view reported) {
+  if (stated.empty() || stated == reported) return {};
+  if (reported.empty()) {
     return fail(ErrorCode::refused,
                 fmt::format("the device does not tell its serial number, and it should be {}", stated),
                 "look which device is on this port; without 'serial' in the configuration any is accepted");
   }
   return fail(ErrorCode::refused,
-              fmt::format("wrong device on the port: its serial number is {}, not {}", told, stated),
+              fmt::format("wrong device on the port: its serial number is {}, not {}", reported, stated),
               "exchange the plugs or the ports of the configuration; if the device was replaced, correct "
               "'serial', and calibrate anew");
 }

@@ -17,7 +17,7 @@ namespace mgtd::drivers {
 
 /// Refused (ErrorCode::refused) with both numbers and what to do. `told`: the device's own; empty when it
 /// does not say.
-[[nodiscard]] Result<void> check_serial(std::string_view stated, std::string_view told);
+[[nodiscard]] Result<void> check_serial(std::string_view stated, std::string_view reported);
 
 /// "0123" of "SN0123", or all of a reply without SN.
 [[nodiscard]] std::string serial_after_sn(std::string_view line);

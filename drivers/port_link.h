@@ -14,7 +14,7 @@ class io_context;
 /// A PortLink carries the bytes of one DeviceLink over one serial port; it is the only part of a driver that
 /// touches Asio.
 ///
-/// Opens the port (link_life.h: how often, and what is shown), stamps what comes in at the return of the
+/// Opens the port (link_status.h: how often, and what is shown), stamps what comes in at the return of the
 /// read, writes what the link sends, and ticks it. End of file, EIO, ENXIO and ENODEV all mean the same: the
 /// port is gone; it is opened again when it is back, and the device starts over. Times given to the link are
 /// those of the Clock, waiting is done in host time.

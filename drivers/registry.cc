@@ -7,7 +7,7 @@
 #include "drivers/dcon_driver.h"
 #include "drivers/gcs2_driver.h"
 #include "drivers/gsm_driver.h"
-#include "drivers/hand_table.h"
+#include "drivers/manual_table.h"
 #include "drivers/obsdaq_driver.h"
 
 namespace mgtd::drivers {
@@ -22,7 +22,7 @@ constexpr std::array kDrivers{
     DriverEntry{"gsm", Role::scalar, "GEM Systems GSM-90 or GSM-19 total-field magnetometer",
                 &gsm::GsmDriver::make},
     DriverEntry{"hand", Role::table, "a table that is turned by hand: the run asks for what its scales say",
-                &HandTable::make, false},
+                &ManualTable::make, false},
     DriverEntry{"obsdaq", Role::sensor, "Mingeo ObsDAQ digitiser, direct or behind a PalmAcq time-stamper",
                 &obsdaq::ObsdaqDriver::make},
 };

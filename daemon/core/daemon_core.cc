@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "calib/calibration/calibration_json.h"
-#include "drivers/hand_table.h"
+#include "drivers/manual_table.h"
 
 namespace mgtd::daemon::core {
 namespace {
@@ -166,7 +166,8 @@ void DaemonCore::carry_out(const run::Action& action, Stamp now) {
   if (const auto* move = std::get_if<run::MoveTable>(&action))
     return order({TableOrder::What::move, move->target}, now);
   if (const auto* set = std::get_if<run::SetTable>(&action)) {
-    if (auto* const table = dynamic_cast<drivers::HandTable*>(&instruments_.table())) table->set(set->angles);
+    if (auto* const table = dynamic_cast<drivers::ManualTable*>(&instruments_.table()))
+      table->set(set->angles);
     return;
   }
   actions_.carry_out(action, now);

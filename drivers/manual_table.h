@@ -12,9 +12,9 @@
 ///   limits.azimuth = [-180, 180]   deg; likewise pitch and roll; an axis that is not there has no limits
 namespace mgtd::drivers {
 
-class HandTable final : public Turntable {
+class ManualTable final : public Turntable {
  public:
-  explicit HandTable(TableLimits limits) : limits_(limits) {}
+  explicit ManualTable(TableLimits limits) : limits_(limits) {}
   static std::unique_ptr<Device> make(int slot, Settings& settings);
 
   void on_open(Stamp now) override;

@@ -21,7 +21,7 @@
 /// its device is live or the port was away. Never a busy loop.
 namespace mgtd::drivers {
 
-class LinkLife {
+class LinkStatus {
  public:
   static constexpr double kMissingWait_s = 0.25, kFirstWait_s = 0.25, kLongestWait_s = 2;
   static constexpr double kFrozen_s = 2, kSaturated_s = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/hand_table.h"
+#include "drivers/manual_table.h"
 
 #include <fmt/format.h>
 
@@ -21,42 +21,42 @@ TableLimits::Range limits_of(Settings& settings, const char* key, double most_de
 
 }  // namespace
 
-std::unique_ptr<Device> HandTable::make(int /*slot*/, Settings& settings) {
+std::unique_ptr<Device> ManualTable::make(int /*slot*/, Settings& settings) {
   TableLimits limits;
   limits.azimuth = limits_of(settings, "limits.azimuth", 180);
   limits.pitch = limits_of(settings, "limits.pitch", 90);
   limits.roll = limits_of(settings, "limits.roll", 180);
-  return std::make_unique<HandTable>(limits);
+  return std::make_unique<ManualTable>(limits);
 }
 
-void HandTable::on_open(Stamp now) {
+void ManualTable::on_open(Stamp now) {
   ++health_.opens;
   health_.state = LinkState::live;
   health_.detail = health_.identity = "turned by hand";
   say(now);
 }
 
-void HandTable::on_tick(Stamp now) {
+void ManualTable::on_tick(Stamp now) {
   if (!last_said_ || to_seconds(now.mono - *last_said_) >= kSayEvery_s) say(now);
 }
 
-void HandTable::on_close(Stamp /*now*/) {
+void ManualTable::on_close(Stamp /*now*/) {
   ++health_.closes;
   health_.state = LinkState::absent;
   health_.detail = "closed";
 }
 
-void HandTable::move_to(TableAngles /*target*/) {
+void ManualTable::move_to(TableAngles /*target*/) {
   emit(DeviceFault{now_, "a table that is turned by hand was told to move",
                    "this is a mistake of the program; please report it"});
 }
 
-void HandTable::set(const TableAngles& scales) {
+void ManualTable::set(const TableAngles& scales) {
   at_ = scales;
   known_ = true;
 }
 
-void HandTable::say(Stamp now) {
+void ManualTable::say(Stamp now) {
   now_ = now;
   last_said_ = now.mono;
   emit(TableReading{now, at_, referenced_, false, known_});

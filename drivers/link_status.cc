@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/link_life.h"
+#include "drivers/link_status.h"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 
 namespace mgtd::drivers {
 
-void LinkLife::refused(const Error& why) {
+void LinkStatus::refused(const Error& why) {
   open_ = false;
   why_ = why.text();
   missing_ = why.code == ErrorCode::unreachable;
   closed_state_ = !missing_ ? LinkState::opening : was_open_ ? LinkState::gone : LinkState::absent;
 }
 
-void LinkLife::opened() {
+void LinkStatus::opened() {
   open_ = was_open_ = true;
   missing_ = false;
   last_.reset();
@@ -24,23 +24,23 @@ void LinkLife::opened() {
   ranged_ = frozen_ = saturated_ = false;
 }
 
-void LinkLife::lost(std::string why) {
+void LinkStatus::lost(std::string why) {
   open_ = false;
   closed_state_ = LinkState::gone;
   why_ = std::move(why);
 }
 
-void LinkLife::ended() {
+void LinkStatus::ended() {
   open_ = was_open_ = false;
   closed_state_ = LinkState::absent;
   why_ = "closed";
 }
 
-void LinkLife::heard(const DeviceEvent& event) {
+void LinkStatus::heard(const DeviceEvent& event) {
   if (const auto* const reading = std::get_if<FieldReading>(&event)) judge(*reading);
 }
 
-void LinkLife::judge(const FieldReading& reading) {
+void LinkStatus::judge(const FieldReading& reading) {
   const Instant now = reading.arrival.mono;
   if (!last_ || last_->y_nT != reading.y_nT) {
     same_since_ = now;
@@ -55,7 +55,7 @@ void LinkLife::judge(const FieldReading& reading) {
   last_ = reading;
 }
 
-Duration LinkLife::next_wait() {
+Duration LinkStatus::next_wait() {
   if (missing_) {
     wait_s_ = kFirstWait_s;  // what is plugged in next has not failed yet
     return from_seconds(kMissingWait_s);
@@ -63,7 +63,7 @@ Duration LinkLife::next_wait() {
   return from_seconds(std::exchange(wait_s_, std::min(2 * wait_s_, kLongestWait_s)));
 }
 
-LinkHealth LinkLife::shown(LinkHealth device) const {
+LinkHealth LinkStatus::shown(LinkHealth device) const {
   if (!open_) {
     device.state = closed_state_;
     device.detail = why_;
