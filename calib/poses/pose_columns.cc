@@ -32,7 +32,8 @@ PoseColumn angle(std::string name, Member member) {
 }
 
 PoseColumn whole(std::string name, std::optional<int> Pose::*member) {
-  return {std::move(name), false, [member](Pose& p, double v) { p.*member = static_cast<int>(v); },
+  return {std::move(name), false,
+          [member](Pose& p, double v) { p.*member = static_cast<int>(std::lround(v)); },
           [member](const Pose& p) { return p.*member ? std::optional<double>(*(p.*member)) : std::nullopt; },
           true};
 }

@@ -76,7 +76,7 @@ Result<void> insert_pose(Database& db, const Pose& pose, std::size_t sensors) {
                             calib::poses::counted(pose.y_nT.size()), sensors),
                 "describe the array that was measured: --array FILE.toml");
   std::string names, marks;
-  for (const PoseColumn& c : pose_columns(sensors)) {
+  for (const calib::poses::PoseColumn& c : stored_columns(sensors)) {
     names += ", " + c.name;
     marks += ", ?";
   }
@@ -86,7 +86,7 @@ Result<void> insert_pose(Database& db, const Pose& pose, std::size_t sensors) {
   row->bind(1, std::int64_t{pose.number}).bind(2, std::string_view(pose.set));
   if (pose.t_utc) row->bind(3, pose.t_utc->ns);
   int at = 4;
-  for (const PoseColumn& c : pose_columns(sensors)) row->bind(at++, c.get(pose, c.index));
+  for (const calib::poses::PoseColumn& c : stored_columns(sensors)) row->bind(at++, c.get(pose));
   if (auto ok = row->run(); !ok) {
     ok.error().message += fmt::format(" (pose {})", pose.number);
     return ok;

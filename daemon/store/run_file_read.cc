@@ -37,8 +37,8 @@ Pose pose_of(const Statement& row, std::size_t sensors) {
   pose.set = row.text(1);
   if (!row.null(2)) pose.t_utc = WallTime{row.integer(2)};
   int at = 3;
-  for (const PoseColumn& c : pose_columns(sensors)) {
-    if (const auto value = row.optional_real(at++)) c.set(pose, c.index, *value);
+  for (const calib::poses::PoseColumn& c : stored_columns(sensors)) {
+    if (const auto value = row.optional_real(at++)) c.set(pose, *value);
   }
   return pose;
 }
@@ -77,7 +77,7 @@ Result<void> read_references(const Database& db, const std::map<int, Pose*>& by_
 Result<PoseTable> RunFile::poses() const {
   const std::size_t sensors = header_.options.geometry.sensors();
   std::string columns = "number, \"set\", t_utc_ns";
-  for (const PoseColumn& c : pose_columns(sensors)) columns += ", " + c.name;
+  for (const calib::poses::PoseColumn& c : stored_columns(sensors)) columns += ", " + c.name;
   const auto count = pose_count();
   if (!count) return tl::unexpected(count.error());
   auto found = rows<Pose>(

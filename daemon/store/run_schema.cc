@@ -14,7 +14,7 @@ namespace {
 
 std::string schema(const RunOptions& options) {
   std::string pose_columns_sql;
-  for (const PoseColumn& c : pose_columns(options.geometry.sensors())) {
+  for (const calib::poses::PoseColumn& c : stored_columns(options.geometry.sensors())) {
     pose_columns_sql += fmt::format(", {} REAL{}", c.name, c.required ? " NOT NULL" : "");
   }
   return fmt::format(
