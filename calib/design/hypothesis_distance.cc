@@ -13,14 +13,8 @@ namespace {
 /// (A'A)^-1, a little of the diagonal added: a direction that nothing determines stays where it is.
 Eigen::MatrixXd inverse_of_products(const Eigen::MatrixXd& A) {
   constexpr double kRidge = 1e-9;
-  Eigen::MatrixXd products = A.transpose() * A;
-  const Eigen::VectorXd scale =
-      products.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? 1 / x : 1; });
-  products = scale.asDiagonal() * products * scale.asDiagonal();
-  products.diagonal().array() += kRidge;
-  const Eigen::MatrixXd inverse = linear::solve_by_ldlt(
-      products, Eigen::MatrixXd(Eigen::MatrixXd::Identity(products.rows(), products.cols())));
-  return scale.asDiagonal() * inverse * scale.asDiagonal();
+  return linear::solve_by_scaled_ldlt(A.transpose() * A, Eigen::MatrixXd::Identity(A.cols(), A.cols()),
+                                      kRidge);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/discovery/law_shape.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +8,10 @@
 
 #include "calib/discovery/formula_text.h"
 #include "calib/effects/effect_context.h"
+#include "calib/linear/cholesky.h"
+#include "calib/linear/ldlt.h"
 #include "calib/linear/normal_draws.h"
+#include "calib/linear/propagation.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::discovery {
@@ -104,10 +106,10 @@ Eigen::MatrixXd best_prior(const Eigen::MatrixXd& A, const Eigen::VectorXd& v,
     for (int r = -10; r <= 0; r += 2) {
       const Eigen::MatrixXd P = unit * (std::pow(10.0, c / 2.0) * curvature +
                                         std::pow(10.0, r / 2.0) * Eigen::MatrixXd::Identity(n, n));
-      const Eigen::LLT<Eigen::MatrixXd> prior(P), posterior(A + P);
-      const double evidence = v.dot(posterior.solve(v)) +
-                              2 * prior.matrixLLT().diagonal().array().log().sum() -
-                              2 * posterior.matrixLLT().diagonal().array().log().sum();
+      const auto prior = linear::Cholesky::of_unscaled(P), posterior = linear::Cholesky::of_unscaled(A + P);
+      if (!prior || !posterior) continue;
+      const double evidence =
+          posterior->squared_length(v) + prior->log_determinant() - posterior->log_determinant();
       if (evidence > most) most = evidence, best = P;
     }
   }
@@ -162,8 +164,9 @@ Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas
   const Eigen::MatrixXd at_poses = functions.at(u), B = x.asDiagonal() * at_poses;
   const Eigen::MatrixXd A = B.transpose() * sums.product(c, c, B);
   const Eigen::VectorXd v = B.transpose() * sums.score(c);
-  const Eigen::MatrixXd C = Eigen::LLT<Eigen::MatrixXd>(A + best_prior(A, v, functions.curvature()))
-                                .solve(Eigen::MatrixXd::Identity(A.rows(), A.rows()));
+  const auto information = linear::Cholesky::of_unscaled(A + best_prior(A, v, functions.curvature()));
+  if (!information) return std::nullopt;
+  const Eigen::MatrixXd C = information->inverse();
   // Gauge: what the calibration takes up of any curve goes out of this one.
   const bool own = covariate == "u" || covariate == "ux" || covariate == "uy" || covariate == "uz";
   const Eigen::VectorXd weight = sums.before_of_one(c).cwiseProduct(x).cwiseProduct(x).cwiseMax(0);
@@ -172,10 +175,10 @@ Result<std::optional<LawShape>> law_shape(const std::vector<FittedLaw>& formulas
   F.col(0).setOnes(), F_at.col(0).setOnes();
   if (own) F.col(1) = u, F_at.col(1) = points;
   const Eigen::MatrixXd to_gauge =
-      F_at * Eigen::LDLT<Eigen::MatrixXd>(F.transpose() * weight.asDiagonal() * F)
-                 .solve(F.transpose() * weight.asDiagonal());
+      F_at * linear::solve_by_ldlt(F.transpose() * weight.asDiagonal() * F,
+                                   Eigen::MatrixXd(F.transpose() * weight.asDiagonal()));
   const Eigen::MatrixXd M = functions.at(points) - to_gauge * at_poses;
-  const Eigen::VectorXd y = M * (C * v), sd = (M * C * M.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd y = M * (C * v), sd = linear::propagated_variances(M, C).cwiseMax(0).cwiseSqrt();
   LawShape out{.covariate = shown_covariate(covariate, {Place::Kind::axis, c}),
                .where = Place{Place::Kind::axis, c}.name(),
                .of_gain = of_gain};

@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "calib/calibration/tensor.h"
 #include "calib/report/described_array.h"
 #include "calib/report/figures/accuracy_figure.h"
 #include "calib/report/figures/lanes_figure.h"
@@ -67,20 +65,6 @@ int channel_of_time(const PanelModel& model) {
 std::string unit_of(const std::string& column) {
   const std::size_t at = column.rfind('_');
   return at == std::string::npos ? "" : column.substr(at + 1);
-}
-
-/// Of the closure combinations of one pose, against the noise of its readings.
-std::vector<double> closure_chi2(const PanelModel& model) {
-  const auto& fit = *model.comparison.fit;
-  Eigen::MatrixXd rows = calibration::closure_rows(fit.problem.geometry);
-  if (const auto baseline_m = fit.problem.geometry.cross_baseline_m()) rows.row(0) *= *baseline_m;
-  Eigen::VectorXd variance(rows.cols());
-  for (Eigen::Index c = 0; c < rows.cols(); ++c) variance[c] = std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
-  const Eigen::LLT<Eigen::MatrixXd> C(rows * variance.asDiagonal() * rows.transpose());
-  std::vector<double> out;
-  for (Eigen::Index k = 0; k < model.points.closure_nT.cols(); ++k)
-    out.push_back(C.matrixL().solve(model.points.closure_nT.col(k)).squaredNorm());
-  return out;
 }
 
 }  // namespace
@@ -172,7 +156,7 @@ std::optional<figures::Figure> closure_figure(const PanelModel& model) {
   v.lanes.push_back(
       {.name = "closure", .unit = "nT", .series = std::move(parts), .limit = {}, .limit_text = {}});
   const auto dof = static_cast<double>(p.closure_nT.rows());
-  const std::vector<double> chi2 = closure_chi2(model);
+  const std::vector<double> chi2(p.closure_chi2.begin(), p.closure_chi2.end());
   const double limit = closure_limit(dof);
   v.lanes.push_back({.name = "chi-square",
                      .unit = fmt::format("{:.0f} d.o.f.", dof),

@@ -209,10 +209,7 @@ class DipoleSearch {
     const auto shifts = 3 * static_cast<Eigen::Index>(from.at_S_m.size());
     Eigen::MatrixXd M = direction.gram;
     M.diagonal().tail(shifts) *= 1 + damping;
-    const Eigen::VectorXd d = M.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::VectorXd scaled = linear::solve_by_ldlt(d.asDiagonal() * M * d.asDiagonal(),
-                                                         Eigen::VectorXd(d.cwiseProduct(direction.by_left)));
-    const Eigen::VectorXd all = d.cwiseProduct(scaled).tail(shifts);
+    const Eigen::VectorXd all = linear::solve_by_scaled_ldlt(M, direction.by_left).tail(shifts);
     Places out;
     for (std::size_t i = 0; i < from.at_S_m.size(); ++i) {
       Eigen::Vector3d step = all.segment<3>(3 * static_cast<Eigen::Index>(i));

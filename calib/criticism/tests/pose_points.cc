@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/calibration/tensor.h"
 #include "calib/criticism/tests/measured_points.h"
 #include "calib/criticism/tests/residual_fields.h"
+#include "calib/linear/cholesky.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -41,6 +44,21 @@ void hide_left_out(const fit::joint::JointFit& fit, PosePoints& out) {
   }
 }
 
+/// Empty where the array has no closure.
+Eigen::VectorXd closure_chi2(const fit::joint::JointFit& fit, const Eigen::MatrixXd& closure_nT) {
+  if (closure_nT.rows() == 0) return {};
+  Eigen::MatrixXd rows = calibration::closure_rows(fit.problem.geometry);
+  if (const auto baseline_m = fit.problem.geometry.cross_baseline_m()) rows.row(0) *= *baseline_m;
+  Eigen::VectorXd variance(rows.cols());
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) variance[c] = std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
+  const auto covariance = linear::Cholesky::of_unscaled(
+      linear::propagated_covariance(rows, Eigen::MatrixXd(variance.asDiagonal())));
+  if (!covariance) return {};
+  Eigen::VectorXd out(closure_nT.cols());
+  for (Eigen::Index k = 0; k < out.size(); ++k) out[k] = covariance->squared_length(closure_nT.col(k));
+  return out;
+}
+
 }  // namespace
 
 Result<PosePoints> pose_points(const fit::joint::JointFit& fit) {
@@ -64,6 +82,7 @@ Result<PosePoints> pose_points(const fit::joint::JointFit& fit) {
     out.direction_S.middleRows<3>(i) = out.direction_S.middleRows<3>(i).colwise().normalized().eval();
   }
   hide_left_out(fit, out);
+  out.closure_chi2 = closure_chi2(fit, out.closure_nT);
   out.left_out.resize(out.pose.size());
   for (const fit::OutlierNode& node : fit.outliers) out.left_out.at(node.place).push_back(node.where);
   out.influence = *std::move(influence);

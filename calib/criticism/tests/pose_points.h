@@ -21,7 +21,8 @@ struct PosePoints {
   Eigen::MatrixXd attitude_deg;  ///< 3 x P, correction of the table angles, axes of the platform
   Eigen::MatrixXd closure_nT;    ///< rows as in closure_names; zero for any gradient
   std::vector<std::string> closure_names{};
-  Eigen::MatrixXd direction_S;  ///< 3N x P, unit vectors of the field in the frame of each sensor
+  Eigen::VectorXd closure_chi2;  ///< P, of the closure against the noise of its readings
+  Eigen::MatrixXd direction_S;   ///< 3N x P, unit vectors of the field in the frame of each sensor
   std::vector<std::vector<std::string>> left_out{};  ///< OutlierNode::where
   std::vector<fit::joint::PoseInfluence> influence{};
 };

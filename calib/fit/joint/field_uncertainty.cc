@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/fit/joint/field_response.h"
+#include "calib/linear/propagation.h"
 
 namespace mgtd::calib::fit::joint {
 
@@ -17,7 +18,7 @@ double calibration_field_sd_nT(const PerSensor<sensor::SensorModel>& sensors,
     for (std::size_t i = 0; i < direction.size(); ++i) {
       const Eigen::Matrix<double, 3, kOwn> J = direction[i].gain * direction[i].by_parameters;
       const auto own = kOwn * static_cast<Eigen::Index>(i);
-      variance += (J * covariance.block<kOwn, kOwn>(own, own) * J.transpose()).trace();
+      variance += linear::propagated_variances(J, covariance.block<kOwn, kOwn>(own, own)).sum();
     }
   }
   const auto components = static_cast<double>(responses.size() * sensors.size() * 3);

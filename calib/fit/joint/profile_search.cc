@@ -135,9 +135,7 @@ class Search {
 
   [[nodiscard]] double predicted_fall() const {
     const Reduced reduced = reduce(problem_, state_, 0);
-    const Eigen::VectorXd d = reduced.S.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::VectorXd g = d.cwiseProduct(reduced.g);
-    return g.dot(linear::solve_by_ldlt(d.asDiagonal() * reduced.S * d.asDiagonal(), g));
+    return reduced.g.dot(linear::solve_by_scaled_ldlt(reduced.S, reduced.g));
   }
 
   double cost_of(double value) {

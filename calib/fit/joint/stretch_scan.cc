@@ -88,9 +88,9 @@ Shift shift_in(const std::vector<Sums>& sums, std::size_t from, std::size_t to, 
   information.noalias() -= taken.transpose() * taken;
   information.diagonal().array() += kRidge * static_cast<double>(to - from);
   const Eigen::VectorXd score = (b.score - a.score).segment(first, count);
-  const Eigen::LLT<Eigen::MatrixXd> L(information);
-  if (L.info() != Eigen::Success) return {};
-  const Eigen::VectorXd shift = L.solve(score);
+  const auto decomposed = linear::Cholesky::of_unscaled(information);
+  if (!decomposed) return {};
+  const Eigen::VectorXd shift = decomposed->solve(score);
   return {score.dot(shift), shift.norm()};
 }
 
