@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "calib/report/choice_json.h"
 #include "calib/report/choice_text.h"
 #include "daemon/run/law_hypotheses.h"
 #include "daemon/store/run_file.h"
@@ -47,7 +48,7 @@ Result<std::vector<calib::criticism::search::Choice>> doubts_of(const std::strin
     if (added == steps->rend()) continue;
     const json result = json::parse(added->result, nullptr, false);
     if (!result.is_object() || !result.contains("choice")) continue;
-    calib::criticism::search::Choice choice = calib::criticism::search::choice_from_json(result["choice"]);
+    calib::criticism::search::Choice choice = calib::report::choice_from_json(result["choice"]);
     if (!choice.open()) continue;
     choice = calib::criticism::search::on_these_poses(std::move(choice), source.table, options);
     if (choice.open()) out.push_back(std::move(choice));
@@ -64,7 +65,7 @@ std::string doubts_text(const std::vector<calib::criticism::search::Choice>& dou
 json doubts_json(const std::vector<calib::criticism::search::Choice>& doubts) {
   json out = json::array();
   for (const calib::criticism::search::Choice& choice : doubts) {
-    json one = calib::criticism::search::to_json(choice);
+    json one = calib::report::to_json(choice);
     one["text"] = calib::report::to_text(choice);
     out.push_back(std::move(one));
   }

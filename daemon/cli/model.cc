@@ -12,6 +12,7 @@
 #include "calib/effects/laws/live_memory.h"
 #include "calib/effects/laws/run_memory.h"
 #include "calib/effects/library/library.h"
+#include "calib/report/choice_json.h"
 #include "calib/report/choice_text.h"
 #include "calib/report/explain_figures.h"
 #include "calib/report/figure_words.h"
@@ -86,7 +87,7 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
              const calib::fit::FitOptions& options, const calib::criticism::search::Choice& choice) {
   const bool good = args.force || !change.vetoed(), keep = good && !args.tried;
   json made = calib::report::to_json(change);
-  if (!choice.spec.empty()) made["choice"] = to_json(choice);
+  if (!choice.spec.empty()) made["choice"] = calib::report::to_json(choice);
   const auto steps = waterfall_of(run, options);
   json pictures = json::object();
   if (auto drawn = draw(args.figures, run, change, steps, options, pictures); !drawn)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "calib/criticism/search/explain.h"
 #include "calib/effects/library/library.h"
@@ -12,8 +11,6 @@
 
 namespace mgtd::calib::criticism::search {
 namespace {
-
-using nlohmann::json;
 
 const double kExcluded = 2 * std::log(1000);
 
@@ -92,26 +89,6 @@ Choice on_these_poses(Choice choice, const PoseTable& table, const fit::FitOptio
     return other && *other - *chosen > kExcluded;
   });
   return choice;
-}
-
-json to_json(const Choice& choice) {
-  return {{"spec", choice.spec},
-          {"finding", choice.finding},
-          {"rivals", choice.alternatives},
-          {"describes_only", choice.describes},
-          {"data", choice.data}};
-}
-
-Choice choice_from_json(const json& object) {
-  try {
-    return {.spec = object.at("spec"),
-            .finding = object.at("finding"),
-            .alternatives = object.at("rivals"),
-            .describes = object.at("describes_only"),
-            .data = object.at("data")};
-  } catch (const json::exception&) {
-    return {};
-  }
 }
 
 }  // namespace mgtd::calib::criticism::search

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -34,9 +33,5 @@ struct Choice {
 /// What is left of the doubt on these poses. `options`: the model, with the effect in it. The same poses
 /// leave it as it was. An alternative that cannot be fitted here stays.
 [[nodiscard]] Choice on_these_poses(Choice choice, const PoseTable& table, const fit::FitOptions& options);
-
-[[nodiscard]] nlohmann::json to_json(const Choice& choice);
-/// Empty (no spec) where the object is no choice: files of earlier versions have none.
-[[nodiscard]] Choice choice_from_json(const nlohmann::json& object);
 
 }  // namespace mgtd::calib::criticism::search

@@ -9,6 +9,7 @@
 #include "calib/criticism/search/model_change.h"
 #include "calib/criticism/tests/comparison.h"
 #include "calib/effects/library/library.h"
+#include "calib/report/choice_json.h"
 #include "calib/report/choice_text.h"
 #include "tests/blind/hidden_run.h"
 
@@ -84,9 +85,9 @@ TEST(Choice, ASurrogateDescribesAndDoesNotExplain) {
 TEST(Choice, ReadsBackAndAnEarlierFileHasNone) {
   const Choice choice{
       .spec = "a", .finding = "AMBIGUOUS", .alternatives = {"b", "c"}, .describes = true, .data = "d"};
-  const Choice read = choice_from_json(to_json(choice));
-  EXPECT_EQ(to_json(read), to_json(choice));
-  EXPECT_FALSE(choice_from_json(nlohmann::json::object()).open());
+  const Choice read = report::choice_from_json(report::to_json(choice));
+  EXPECT_EQ(report::to_json(read), report::to_json(choice));
+  EXPECT_FALSE(report::choice_from_json(nlohmann::json::object()).open());
 }
 
 /// The number that was found is part of what is kept, and all judges see the same residual with it.
