@@ -12,6 +12,7 @@
 #include "tests/rig/simulated_table.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::calib::testing {
 namespace {
@@ -82,7 +83,7 @@ PoseTable rig_run(const rig::Scenario& scenario, std::size_t unseen, std::uint64
 
 rig::Scenario paper_experiment() {
   const std::string path = mgtd::testing::source_path("tests/scenarios/paper_experiment.toml");
-  auto scenario = rig::parse_scenario(mgtd::testing::slurp(path), path);
+  auto scenario = rig::parse_scenario(mgtd::testing::whole_file(path), path);
   if (!scenario) throw std::runtime_error(scenario.error().front());
   return *std::move(scenario);
 }

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/discovery/pages.h"
+#include "tests/support/whole_file.h"
 
 namespace {
 
@@ -48,11 +48,6 @@ std::string standing(const std::string& file, const std::string& heading) {
   return file.substr(from, next == std::string::npos ? next : next + 1 - from);
 }
 
-std::string whole_file(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -77,7 +72,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"clean", "laws", "lawless"}));
   CLI11_PARSE(app, argc, argv);
   try {
-    const std::string before = whole_file(output);
+    const std::string before = mgtd::testing::whole_file(output);
     for (const Section& section : sections(extent))  // before hours of work
       if (std::find(only.begin(), only.end(), section.name) == only.end()) standing(before, section.heading);
     std::string page =

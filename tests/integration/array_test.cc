@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -60,7 +61,7 @@ TEST(ArrayOnTheBench, ATetrahedronStreamsTheGradientThatIsThere) {
 
   // The sensors are moved and the configuration follows: the calibration no longer holds.
   bench.daemon().signal(SIGTERM);
-  std::string config = slurp(bench.config_path());
+  std::string config = whole_file(bench.config_path());
   config.replace(config.find("[0.2, 0.2, 0.2]"), 15, "[0.3, 0.3, 0.3]");
   std::ofstream(bench.config_path()) << config;
   bench.start_daemon();

@@ -12,6 +12,7 @@
 
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 
@@ -29,7 +30,7 @@ class Bench {
     rig_ = std::make_unique<ChildProcess>(
         with({program("mgt-rig"), "run", "--dir", ports(), "--speed-up", speed_up_}, rig), dir_.path(),
         "rig");
-    const bool ready = eventually([&] { return !slurp(dir_ / "ports/ready").empty(); });
+    const bool ready = eventually([&] { return !whole_file(dir_ / "ports/ready").empty(); });
     const Finished config = run_program(with({program("mgt-rig"), "config", "--dir", ports(), "--speed-up",
                                               speed_up_, "--state", dir_.path(), "--tcp", "127.0.0.1:0"},
                                              rig),

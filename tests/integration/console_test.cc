@@ -7,6 +7,7 @@
 
 #include "tests/integration/bench.h"
 #include "tests/support/line_peer.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -57,7 +58,7 @@ TEST(ConsoleOnTheBench, AnOccupiedAddressIsSaidAndTheRigIsMeasuredAllTheSame) {
   Bench first, second;
   first.start_daemon();
   const std::string address = first.ask({"console"}).at("address");
-  std::string config = slurp(second.config_path());
+  std::string config = whole_file(second.config_path());
   const std::string mine = address.substr(7, address.size() - 8);
   const std::size_t at = config.find("[console]\nlisten = \"127.0.0.1:0\"");
   ASSERT_NE(at, std::string::npos);

@@ -9,6 +9,7 @@
 
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -96,14 +97,14 @@ TEST_F(EvidenceOfPrograms, PosesAreMaskedWhileTheFitOfTheOthersIsRefused) {
   EXPECT_TRUE(all.at("rms_before_nT").is_null());
   EXPECT_GT(all.at("rms_after_nT").get<double>(), 0);
   EXPECT_EQ(mgt({"report", file(), "-o", file() + ".html"}).exit_code, 0);
-  EXPECT_THAT(slurp(file() + ".html"), HasSubstr("refused → "));
+  EXPECT_THAT(whole_file(file() + ".html"), HasSubstr("refused → "));
 }
 
 /// The reason is typed by a person and stands in a page: it is text there, whatever it says.
 TEST_F(EvidenceOfPrograms, TheReportTellsWhichPosesAreMaskedAndWhy) {
   const auto reported = [&] {
     EXPECT_EQ(mgt({"report", file(), "-o", file() + ".html"}).exit_code, 0);
-    return slurp(file() + ".html");
+    return whole_file(file() + ".html");
   };
   ASSERT_EQ(mgt({"mask", file(), "3", "7-9", "--why", "a <b>car</b> stood beside the rig"}).exit_code, 0);
   const std::string page = reported();
@@ -156,7 +157,8 @@ TEST_F(EvidenceOfPrograms, FiguresComeWithTheirWordsAndTheirData) {
       const json& points = figure.at("points");
       ASSERT_FALSE(points.at("rows").empty()) << name;
       for (const json& row : points.at("rows")) EXPECT_EQ(row.size(), points.at("head").size()) << name;
-      EXPECT_TRUE(slurp(folder(command.front()) + "/" + name + ".svg") == figure.at("svg").get<std::string>())
+      EXPECT_TRUE(whole_file(folder(command.front()) + "/" + name + ".svg") ==
+                  figure.at("svg").get<std::string>())
           << name;
     }
   }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -73,7 +74,7 @@ TEST(Identity, SerialNumbersAreFilledIntoTheConfiguration) {
   bench.start_daemon();
   const Finished written = bench.mgt({"ports", "--write", bench.config_path()});
   ASSERT_EQ(written.exit_code, 0) << written.err;
-  EXPECT_THAT(slurp(bench.config_path()), HasSubstr("fluxgate2\"\nserial = \"1002\""));
+  EXPECT_THAT(whole_file(bench.config_path()), HasSubstr("fluxgate2\"\nserial = \"1002\""));
   EXPECT_EQ(bench.mgt({"check-config", bench.config_path()}).exit_code, 0);
   bench.start_daemon();
   ASSERT_EQ(bench.rig({"fault", bench.ports(), "exchange", "fluxgate2", "fluxgate4"}).exit_code, 0);

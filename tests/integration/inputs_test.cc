@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -102,7 +103,7 @@ TEST(Inputs, AMotorsCurrentIsSeenRecordedAndNamed) {
   ASSERT_EQ(run.exit_code, 0) << run.err << bench.daemon().err();
   const std::string file = run_file(bench), csv = bench.dir() / "poses.csv";
   ASSERT_EQ(bench.mgt({"export", file, "-o", csv}).exit_code, 0);
-  const auto table = columns(slurp(csv));
+  const auto table = columns(whole_file(csv));
   ASSERT_TRUE(table.contains("motor_A") && table.contains("supply_V"));
   ASSERT_EQ(table.at("motor_A").size(), 58U);
   for (const std::string& cell : table.at("motor_A")) EXPECT_NEAR(std::stod(cell), 1, 1.001);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -171,7 +172,7 @@ TEST(LiveCalibration, WhatCannotBeUsedIsRefusedAndNothingChanges) {
   const std::string poses = bench.dir() / "poses.csv", cal = bench.dir() / "cal.json";
   ASSERT_EQ(bench.rig({"table", "--rig", "table6", "-o", poses}).exit_code, 0);
   ASSERT_EQ(bench.mgt({"fit", poses, "-o", cal}).exit_code, 0);
-  std::string edited = slurp(cal);
+  std::string edited = whole_file(cal);
   edited.replace(edited.find("\"poses\": 157"), 12, "\"poses\": 158");
   std::ofstream(bench.dir() / "edited.json") << edited;
   const Finished changed = bench.mgt({"calibrations", "import", bench.dir() / "edited.json"});

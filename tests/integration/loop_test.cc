@@ -10,6 +10,7 @@
 #include "proto/error.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -147,14 +148,14 @@ TEST_F(Loop, AFormulaIsExaminedKeptAndUsedByItsName) {
   EXPECT_THAT(explain.out, HasSubstr("\"effect\":\"warmth\""));
   ASSERT_EQ(mgt({"add", "warmth", run_file()}).exit_code, 0);
   ASSERT_EQ(mgt({"fit", run_file(), "-o", file("cal.json")}).exit_code, 0);
-  EXPECT_THAT(slurp(file("cal.json")), HasSubstr("expr=T_degC - 20"));
+  EXPECT_THAT(whole_file(file("cal.json")), HasSubstr("expr=T_degC - 20"));
   EXPECT_EQ(mgt({"apply", file("cal.json"), file("poses.csv")}).exit_code, 0) << "complete in itself";
   EXPECT_EQ(ask({"fit", run_file(), "--with", "none", "--with", "warmth@s2.x"}).at("effects").size(), 1U);
 }
 
 TEST_F(Loop, ASecondRunConfirmsAFormula) {
   ASSERT_EQ(mgt({"define", run_file(), "warmth", "T_degC - 20", "--scale", "s3.z"}).exit_code, 0);
-  std::string scenario = slurp(kScenario);
+  std::string scenario = whole_file(kScenario);
   scenario.replace(scenario.find("seed = 12"), 9, "seed = 77");
   std::ofstream(file("second.toml")) << scenario;
   ASSERT_EQ(run({"mgt-rig", "table", "--scenario", file("second.toml"), "-o", file("second.csv")}).exit_code,
@@ -188,7 +189,7 @@ TEST_F(Loop, TheNextMeasurementThatWouldSettleAPair) {
   for (std::size_t i = 1; i < asked.at("next").size(); ++i)
     EXPECT_LE(asked.at("next").at(i).at("p_right_after"), asked.at("next").at(i - 1).at("p_right_after"));
   // What it wrote is a list that the planner reads.
-  EXPECT_THAT(slurp(file("list.csv")), HasSubstr("pose,set,azimuth_deg"));
+  EXPECT_THAT(whole_file(file("list.csv")), HasSubstr("pose,set,azimuth_deg"));
   EXPECT_NE(mgt({"plan", file("list.csv")}).exit_code, 2);
   const Finished one = mgt({"next", run_file(), "axis.cubic"});
   EXPECT_EQ(one.exit_code, 2);
@@ -202,7 +203,7 @@ TEST_F(Loop, TheReportIsOnePageThatNeedsNothingElse) {
   const Finished report = mgt({"report", run_file(), "-o", file("report.html"), "--json"});
   ASSERT_EQ(report.exit_code, 0) << report.err;
   EXPECT_EQ(json::parse(report.out).at("verdict"), "PASS");
-  const std::string page = slurp(file("report.html"));
+  const std::string page = whole_file(file("report.html"));
   EXPECT_THAT(page, HasSubstr("<!doctype html>"));
   EXPECT_THAT(page, HasSubstr("What good looks like"));
   EXPECT_THAT(page, HasSubstr("What each effect takes out"));
@@ -212,7 +213,7 @@ TEST_F(Loop, TheReportIsOnePageThatNeedsNothingElse) {
   for (const char* loaded : {"<script", "src=", "href=", "url(", "@import"})
     EXPECT_EQ(page.find(loaded), std::string::npos) << loaded;
   EXPECT_EQ(mgt({"report", file("none.csv"), "-o", file("x.html")}).exit_code, 2);
-  EXPECT_EQ(slurp(file("x.html")), "");
+  EXPECT_EQ(whole_file(file("x.html")), "");
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -178,8 +178,7 @@ TEST_F(NextLaw, WhatDiscoverKeepsIsConfirmedByASecondRunAndStandsInTheReport) {
 
   const std::string page = file("report.html");
   ASSERT_EQ(run({"mgt", "report", run1, "-o", page}).exit_code, 0);
-  std::ifstream in(page);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = whole_file(page);
   EXPECT_THAT(text, HasSubstr("<h3>LAW-SET: z^4 at s3.z</h3>"));
   EXPECT_THAT(text, HasSubstr("Shape of the law at s3.z"));
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -17,7 +18,7 @@ using ::testing::HasSubstr;
 
 /// The configuration with a line put into the first [[sensor]], or a text replaced everywhere.
 void edit_config(const Bench& bench, const std::string& from, const std::string& to) {
-  std::string text = slurp(bench.config_path());
+  std::string text = whole_file(bench.config_path());
   const auto at = text.find(from);
   ASSERT_NE(at, std::string::npos);
   text.replace(at, from.size(), to);
@@ -101,7 +102,7 @@ TEST(Operator, TwoDaemonsCannotHoldOnePort) {
   Bench bench;
   bench.start_daemon();
   const TemporaryDirectory other;
-  std::string config = slurp(bench.config_path());
+  std::string config = whole_file(bench.config_path());
   for (const std::string key : {"\ndir = \"", "\nunix = \""}) {
     for (auto at = config.find(key); at != std::string::npos; at = config.find(key, at + 1))
       config.replace(at + key.size(), bench.dir().path().size(), other.path());

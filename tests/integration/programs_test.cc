@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -114,7 +115,7 @@ TEST(Programs, AReplayOfADamagedJournalSaysSo) {
   const Finished whole = replay();
   EXPECT_EQ(whole.exit_code, 0) << whole.err;
   EXPECT_EQ(json::parse(whole.out).at("bytes_damaged"), 0);
-  std::string bytes = slurp(journal);
+  std::string bytes = whole_file(journal);
   const std::size_t middle = bytes.size() / 2;
   for (std::size_t i = middle; i < middle + 64; ++i) bytes[i] = static_cast<char>(~bytes[i]);
   std::ofstream(journal, std::ios::binary | std::ios::trunc) << bytes;
@@ -127,7 +128,7 @@ TEST(Programs, AReplayOfADamagedJournalSaysSo) {
 /// Whoever reads the log of a daemon that streams nothing finds why.
 TEST(Programs, APortThatIsMissingFromTheStartIsInTheLog) {
   Bench bench;
-  std::string config = slurp(bench.config_path());
+  std::string config = whole_file(bench.config_path());
   const std::size_t port = config.find("/fluxgate2\"");
   ASSERT_NE(port, std::string::npos);
   config.replace(port, std::string("/fluxgate2").size(), "/nowhere");
@@ -142,7 +143,7 @@ TEST(Programs, APortThatIsMissingFromTheStartIsInTheLog) {
 /// What is no mistake and will be missed all the same is said by both programs.
 TEST(Programs, AConfigurationIsCheckedByTheDaemonAsByTheTool) {
   Bench bench;
-  std::string config = slurp(bench.config_path());
+  std::string config = whole_file(bench.config_path());
   const std::size_t scalar = config.find("[scalar]");
   ASSERT_NE(scalar, std::string::npos);
   config.erase(scalar, config.find("\n[", scalar) - scalar);
@@ -314,7 +315,7 @@ TEST(Programs, BadInputIsNamedAndNothingIsWritten) {
       run_program({program("mgt"), "fit", dir / "bad.csv", "-o", dir / "cal.json"}, dir.path());
   EXPECT_EQ(fit.exit_code, 2);
   EXPECT_THAT(fit.err, HasSubstr("bad.csv:1:1: missing column"));
-  EXPECT_EQ(slurp(dir / "cal.json"), "");
+  EXPECT_EQ(whole_file(dir / "cal.json"), "");
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"frobnicate"}, {"explain"}, {"fit", "x.csv", "--method", "guess"}}) {
     std::vector<std::string> command{program("mgt"), "--json"};

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/bench.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -54,7 +55,7 @@ TEST(UntilExplained, AKilledDaemonGoesOnWithWhatItHadPlanned) {
   const std::string run = run_file(bench), page = bench.dir() / "report.html";
   EXPECT_EQ(bench.ask({"explain", run}).at("verdict"), "EXPLAINED");
   ASSERT_EQ(bench.mgt({"report", run, "-o", page}).exit_code, 0);
-  const std::string text = slurp(page);
+  const std::string text = whole_file(page);
   EXPECT_THAT(text, HasSubstr("How the run went on until it was explained"));
   // Poses measured on a busy computer scatter more, and the first of them may leave a rest beside the name.
   EXPECT_THAT(text, AnyOf(HasSubstr("AMBIGUOUS: axis.quadratic or axis.transverse"),

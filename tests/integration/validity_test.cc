@@ -8,6 +8,7 @@
 
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -27,7 +28,7 @@ class Validity : public ::testing::Test {
   }
   /// Header and twelve of the random poses; `shift_nT` is added to s3_z_nT.
   void dozen(const std::string& from, const std::string& to, double shift_nT) {
-    std::istringstream in(slurp(dir_ / from));
+    std::istringstream in(whole_file(dir_ / from));
     std::ofstream out(dir_ / to);
     std::string line;
     std::getline(in, line);

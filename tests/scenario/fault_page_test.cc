@@ -9,6 +9,7 @@
 #include "tests/scenario/fault_story.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd {
 namespace {
@@ -79,7 +80,7 @@ std::string table() {
 }
 
 TEST(FaultPage, SaysWhatHappens) {
-  std::string page = testing::slurp(kPage);
+  std::string page = testing::whole_file(kPage);
   const std::size_t begin = page.find(kBegin), end = page.find(kEnd);
   ASSERT_NE(begin, std::string::npos) << kPage;
   ASSERT_NE(end, std::string::npos) << kPage;

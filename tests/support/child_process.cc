@@ -9,8 +9,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -30,13 +30,6 @@ Finished outcome(int status) {
 }
 
 }  // namespace
-
-std::string slurp(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 ChildProcess::ChildProcess(std::vector<std::string> command, const std::string& dir, const std::string& name)
     : out_path_(dir + "/" + name + ".out"), err_path_(dir + "/" + name + ".err") {
@@ -82,8 +75,8 @@ std::optional<Finished> ChildProcess::wait(std::chrono::seconds limit) {
   return finished_;
 }
 
-std::string ChildProcess::err() const { return slurp(err_path_); }
-std::string ChildProcess::out() const { return slurp(out_path_); }
+std::string ChildProcess::err() const { return whole_file(err_path_); }
+std::string ChildProcess::out() const { return whole_file(out_path_); }
 
 Finished run_program(std::vector<std::string> command, const std::string& dir, std::chrono::seconds limit) {
   ChildProcess child(std::move(command), dir, "program");

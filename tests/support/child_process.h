@@ -61,6 +61,4 @@ class TemporaryDirectory {
   std::string path_;
 };
 
-[[nodiscard]] std::string slurp(const std::string& path);
-
 }  // namespace mgtd::testing

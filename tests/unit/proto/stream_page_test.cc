@@ -10,11 +10,12 @@
 #include "proto/status_codec.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd {
 namespace {
 
-std::string page() { return testing::slurp(mgtd::testing::source_path("docs/stream.md")); }
+std::string page() { return testing::whole_file(mgtd::testing::source_path("docs/stream.md")); }
 
 TEST(StreamPage, NamesEveryCommand) {
   const std::string text = page();

@@ -8,6 +8,7 @@
 
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::rig {
 namespace {
@@ -20,7 +21,7 @@ TEST(Scenario, EveryFileOfTheRepositoryIsOne) {
   for (const auto& entry :
        std::filesystem::directory_iterator(mgtd::testing::source_path("tests/scenarios"))) {
     const auto scenario =
-        parse_scenario(mgtd::testing::slurp(entry.path()), entry.path().filename().string());
+        parse_scenario(mgtd::testing::whole_file(entry.path()), entry.path().filename().string());
     EXPECT_TRUE(scenario.has_value()) << (scenario ? "" : scenario.error().front());
     ++files;
   }

@@ -12,6 +12,7 @@
 #include "tests/rig/simulated_table.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::rig {
 namespace {
@@ -105,7 +106,7 @@ TEST(Survey, EverySensorHasNoiseOfItsOwn) {
 /// What the program wrote for the cross before it knew of any other array.
 TEST(Survey, TheCrossIsWhatItWas) {
   const std::string path = mgtd::testing::source_path("tests/scenarios/paper_experiment.toml");
-  const Scenario scenario = parse_scenario(mgtd::testing::slurp(path), path).value();
+  const Scenario scenario = parse_scenario(mgtd::testing::whole_file(path), path).value();
   EXPECT_EQ(sha256_hex(truth_json(scenario).dump(1) + "\n"),
             "f5b3dabfdd35a51be0fe96d466039d753878e4562b725c2d154445f789cafe41");
   const Survey survey =

@@ -30,7 +30,7 @@ const criticism::tests::Untestable* find(const std::vector<criticism::tests::Unt
 TEST(Backlash, TheFirstPoseOfARunNeedNotHaveASense) {
   for (const std::size_t lacking : {0U, 1U, 15U}) {
     const PoseTable table = with_sense(lacking);
-    EXPECT_TRUE((*library::make_effect("table.backlash"))->check(table)) << lacking;
+    EXPECT_TRUE((*library::make_effect("table.backlash"))->applicable(table)) << lacking;
     EXPECT_EQ(find(criticism::tests::library_candidates(table).untestable, "table.backlash"), nullptr)
         << lacking;
     fit::FitOptions options;
@@ -41,7 +41,7 @@ TEST(Backlash, TheFirstPoseOfARunNeedNotHaveASense) {
 
 TEST(Lack, SaysHowManyPosesAndWhatToDo) {
   const PoseTable table = with_sense(16);
-  const auto refused = (*library::make_effect("table.backlash"))->check(table);
+  const auto refused = (*library::make_effect("table.backlash"))->applicable(table);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message,
             "table.backlash needs sense, which 16 of 157 poses have not (the first: pose 1)");
@@ -55,7 +55,7 @@ TEST(Lack, SaysHowManyPosesAndWhatToDo) {
 TEST(Lack, AnAngleIsNeededOfEveryPose) {
   PoseTable table = with_sense(1);
   table.poses[7].pitch_rad.reset();
-  EXPECT_THAT((*library::make_effect("table.backlash"))->check(table).error().message,
+  EXPECT_THAT((*library::make_effect("table.backlash"))->applicable(table).error().message,
               HasSubstr("table.backlash needs"));
 }
 

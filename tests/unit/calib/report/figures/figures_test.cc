@@ -10,10 +10,10 @@
 #include <fstream>
 #include <limits>
 #include <regex>
-#include <sstream>
 
 #include "calib/report/figures/text_width.h"
 #include "tests/support/checkout.h"
+#include "tests/support/whole_file.h"
 #include "tests/unit/calib/report/figures/examples.h"
 
 namespace mgtd::calib::report::figures {
@@ -21,13 +21,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::string slurp(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 double number(const std::string& tag, const std::string& name) {
   const std::size_t at = tag.find(" " + name + "=\"");
@@ -125,7 +118,7 @@ TEST(Figures, AreThoseThatWereLookedAt) {
   for (const Figure& f : testing::examples(24)) {
     const std::filesystem::path path = folder / (f.name + ".svg");
     if (anew) std::ofstream(path, std::ios::binary) << f.svg << '\n';
-    EXPECT_TRUE(f.svg + "\n" == slurp(path))
+    EXPECT_TRUE(f.svg + "\n" == mgtd::testing::whole_file(path))
         << f.name << " is drawn otherwise: look at it, then MGTD_NEW_GOLDEN=1";
   }
 }
