@@ -13,6 +13,7 @@
 #include "calib/validity/validity_check.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
 
 /// A vector reference that stands still beside the table, which turns the sensors.
@@ -140,7 +141,7 @@ TEST(ReferenceBeside, ATurnThatNothingTellsHasNoUncertainty) {
 /// Eight metres away the field is another; its size at the array is that of the scalar magnetometer.
 TEST(ReferenceBeside, TheScenarioIsFittedDownToTheNoise) {
   const std::string path = mgtd::testing::source_path("tests/scenarios/reference_beside.toml");
-  const rig::Scenario scenario = rig::parse_scenario(mgtd::testing::slurp(path), path).value();
+  const rig::Scenario scenario = rig::parse_scenario(mgtd::testing::whole_file(path), path).value();
   const PoseTable table = rig::simulated_table(scenario, rig::run_of_157({}, scenario.seed), scenario.seed);
   EXPECT_GT(std::abs(*table.poses[0].f_nT - table.poses[0].ref_nT->norm()), 5);
   const fit::FitReport report = fitted(table, testing::one_sensor());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/report/validity_report.h"
 #include "calib/validity/validity_check.h"
+#include "calib/report/validity_report.h"
 
 #include <gmock/gmock.h>
 
