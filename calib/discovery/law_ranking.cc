@@ -100,6 +100,7 @@ Result<void> refine_inner(std::vector<RankedLaw>& laws, std::size_t count, const
       if (fitted->k == law.k && fitted->S > law.S) law.S = fitted->S, law.inner = inner;
       return fitted->k == law.k ? fitted->S : 0;
     };
+    // By golden section: Boost.Math's brent_find_minima has no way to say that a value cannot be fitted.
     double a = low + kGolden * (high - low), b = high - kGolden * (high - low);
     auto of_a = S_at(a), of_b = S_at(b);
     const int steps = steps_for(law.S);

@@ -8,11 +8,11 @@ namespace mgtd::calib::fit {
 enum class Termination {
   /// Linear equations, solved in one pass: nothing iterates (the two-step and the simplified method).
   closed_form,
-  /// The next step would lower chi-square by less than JointSolverLimits::predicted_fall, and neither the
+  /// The next step would lower chi-square by less than kConverged (joint_limits.h), and neither the
   /// noise estimates nor the readings that are left out change any more.
   converged,
   /// The step limit was reached while chi-square only crept along a direction that is weakly known
-  /// (JointSolverLimits::slow_fall): the solution is used.
+  /// (kSlowFall): the solution is used.
   slow_progress,
   /// Noise estimates or left-out readings still changed after kMaxWeighingRounds rounds: the weights of the
   /// last round are used.

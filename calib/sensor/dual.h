@@ -9,8 +9,9 @@
 ///     f(v + sum d_i e_i) = f(v) + f'(v) sum d_i e_i,   e_i e_j = 0
 ///
 /// Works as an Eigen scalar, so that one templated equation gives values (double) and Jacobians (Dual<N>).
-/// Comparisons look at the value only: a branch is differentiated as if it were taken everywhere near the
-/// point.
+/// Eigen's AutoDiffScalar lies among its unsupported modules, and Boost.Math's autodiff nests a type for each
+/// variable to give higher derivatives, which nothing here needs. Comparisons look at the value only: a
+/// branch is differentiated as if it were taken everywhere near the point.
 namespace mgtd::calib::sensor {
 
 template <int N>
