@@ -5,7 +5,7 @@ namespace mgtd {
 
 std::string_view serial_of(const InstrumentIdentity& who) {
   constexpr std::string_view kMark = ", serial ";
-  const std::string_view told = who.told;
+  const std::string_view told = who.identity;
   const auto at = told.rfind(kMark);
   return at == std::string_view::npos ? std::string_view{} : told.substr(at + kMark.size());
 }

@@ -7,8 +7,8 @@
 namespace mgtd {
 
 struct InstrumentIdentity {
-  std::string place;  ///< "s1" .. "s4", "table", "scalar"
-  std::string told;   ///< LinkHealth::identity: as it names itself, with its serial number where it tells
+  std::string place;     ///< "s1" .. "s4", "table", "scalar"
+  std::string identity;  ///< LinkHealth::identity: as it names itself, with its serial number where it tells
   bool operator==(const InstrumentIdentity&) const = default;
 };
 

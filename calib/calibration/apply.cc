@@ -20,12 +20,12 @@ struct AppliedColumns {
   bool time{false}, sd{false}, chi2{false}, left_out{false};
   bool cross{true};  ///< curl and centre
   bool line{false};  ///< the derivative along the line of the sensors
-  std::array<bool, 6> told{};
+  std::array<bool, 6> measured{};
 
   explicit AppliedColumns(const std::vector<AppliedPose>& rows) {
     time = std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.t_s.has_value(); });
     left_out = std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.left_out.empty(); });
-    told.fill(true);
+    measured.fill(true);
     if (rows.empty()) return;
     const TensorSample& first = rows.front().sample;
     channels = rows.front().b_P_nT.size();
@@ -34,8 +34,8 @@ struct AppliedColumns {
     line = first.along_line.has_value();
     sd = line && first.along_line->sd_nT_per_m.allFinite();
     const auto g = components(first.g_nT_per_m), g_sd = components(first.g_sd_nT_per_m);
-    for (std::size_t i = 0; i < told.size(); ++i) {
-      told[i] = !std::isnan(g[i]);
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      measured[i] = !std::isnan(g[i]);
       sd = sd || std::isfinite(g_sd[i]);
     }
   }
@@ -49,7 +49,7 @@ std::string header(const AppliedColumns& columns) {
   out += ",Bx_nT,By_nT,Bz_nT,F_nT";
   const auto add = [&](const char* kind) {
     for (std::size_t i = 0; i < kGradientNames.size(); ++i)
-      if (columns.told[i]) out += fmt::format(",{}{}_nT_per_m", kGradientNames[i], kind);
+      if (columns.measured[i]) out += fmt::format(",{}{}_nT_per_m", kGradientNames[i], kind);
   };
   const auto add_line = [&](const char* kind) {
     for (const char axis : {'x', 'y', 'z'})
@@ -123,8 +123,8 @@ std::string format_applied(const std::vector<AppliedPose>& rows) {
     for (const double b : s.b_P_nT) add(b);
     add(s.f_nT);
     const auto add_components = [&](const Gradient& g) {
-      for (std::size_t i = 0; i < columns.told.size(); ++i)
-        if (columns.told[i]) add(components(g)[i]);
+      for (std::size_t i = 0; i < columns.measured.size(); ++i)
+        if (columns.measured[i]) add(components(g)[i]);
     };
     add_components(s.g_nT_per_m);
     if (s.along_line)

@@ -119,7 +119,7 @@ std::string advice(const std::string& effect, const std::string& alternative) {
   return {};
 }
 
-/// Both ways of each pair, the worse one kept.
+/// Both ways of each pair, the harder one kept.
 std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs) {
   std::vector<LookAlike> out;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -128,15 +128,15 @@ std::vector<LookAlike> compare_all(const std::vector<Shape>& shapes, int& pairs)
       if (ij.where.empty() && ji.where.empty()) continue;
       ++pairs;
       const bool first = ij.alike >= ji.alike;
-      const Hardest& worse = first ? ij : ji;
-      if (named_right(worse.alike) >= kSeparated) continue;
+      const Hardest& harder = first ? ij : ji;
+      if (named_right(harder.alike) >= kSeparated) continue;
       const std::string &a = shapes[first ? i : j].candidate_effect->name,
                         &b = shapes[first ? j : i].candidate_effect->name;
       out.push_back({.effect = a,
-                     .where = worse.where,
+                     .where = harder.where,
                      .alternative = b,
-                     .correlation = std::sqrt(worse.alike),
-                     .p_right = named_right(worse.alike),
+                     .correlation = std::sqrt(harder.alike),
+                     .p_right = named_right(harder.alike),
                      .remedy = {},
                      .advice = advice(a, b)});
     }

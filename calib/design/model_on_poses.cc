@@ -33,7 +33,7 @@ Result<Eigen::MatrixXd> rows_of(const ModelOnPoses& model, const PoseTable& tabl
     if (!spec) return tl::unexpected(spec.error());
     const auto effect = effects::library::make_effect(*spec, context);
     if (!effect) return tl::unexpected(effect.error());
-    if (const auto ok = (*effect)->check(table); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = (*effect)->applicable(table); !ok) return tl::unexpected(ok.error());
     const Eigen::MatrixXd rows = criticism::tests::effect_rows(model.problem, model.state, *effect);
     const Eigen::Index before = out.cols();
     out.conservativeResize(rows.rows(), before + rows.cols());

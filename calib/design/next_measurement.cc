@@ -52,7 +52,7 @@ Eigen::MatrixXd columns_of(const ModelOnPoses& design, const criticism::tests::R
   if (!parsed) return {};
   const auto effect =
       effects::library::make_effect(*parsed, effects::EffectContext{.table = &table, .offset_nT = {}});
-  if (!effect || !(*effect)->check(table)) return {};
+  if (!effect || !(*effect)->applicable(table)) return {};
   if (names != nullptr)
     for (const effects::Coefficient& c : (*effect)->coefficients()) names->push_back(c.name);
   const Eigen::MatrixXd rows = criticism::tests::effect_rows(design.problem, design.state, *effect);

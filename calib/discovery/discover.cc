@@ -189,15 +189,16 @@ Result<void> judge_in_fit(const PoseTable& table, const DiscoverOptions& options
       first.random_beside = first.over_nothing_beside > 0;
     }
   }
-  const JudgedLaws judged = verdict_of(in_force, laws, out, options.looks);
-  out.verdict = judged.verdict, out.reason = judged.reason;
+  const JudgedLaws judged = finding_of(in_force, laws, out, options.looks);
+  out.finding = judged.finding, out.reason = judged.reason;
   return {};
 }
 
 /// The shape of the first law, and what no part of the choice has seen.
-Result<void> check(const PoseTable& table, const DiscoverOptions& options, const fit::joint::JointFit& fit,
-                   const NoiseInForce& in_force, const Workbench& bench, ChannelSums sums,
-                   std::vector<ChosenLaw>& laws, DiscoveryReport& out) {
+Result<void> check_first_law(const PoseTable& table, const DiscoverOptions& options,
+                             const fit::joint::JointFit& fit, const NoiseInForce& in_force,
+                             const Workbench& bench, ChannelSums sums, std::vector<ChosenLaw>& laws,
+                             DiscoveryReport& out) {
   FoundLaw& first = laws.front().law;
   for (std::size_t i = 1; i < laws.size(); ++i) take_out(laws[i].head, sums);
   auto shape = law_shape(laws.front().alike, laws.front().covariates, bench.inputs, sums, options.fit.seed);
@@ -266,13 +267,13 @@ Result<DiscoveryReport> discover_in(const PoseTable& run, const DiscoverOptions&
   const LeftOn left = left_on(found->left);
   out.left_sigmas = left.sigmas, out.left_on = sensor::channel_name(left.channel);
   out.may_be_drift = may_be_drift(*in_force, found->laws.front());
-  const JudgedLaws judged = verdict_of(*in_force, found->laws, out, options.looks);
-  out.verdict = judged.verdict, out.reason = judged.reason;
+  const JudgedLaws judged = finding_of(*in_force, found->laws, out, options.looks);
+  out.finding = judged.finding, out.reason = judged.reason;
   if (found->laws.front().law.stands_out)
     if (const auto ok = judge_in_fit(table, options, *fit, *in_force, bench, found->laws, out); !ok)
       return tl::unexpected(ok.error());
   if (found->laws.front().law.stands_out && options.checks)
-    if (const auto ok = check(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
+    if (const auto ok = check_first_law(table, options, *fit, *in_force, bench, bare, found->laws, out); !ok)
       return tl::unexpected(ok.error());
   for (ChosenLaw& law : found->laws) out.laws.push_back(std::move(law.law));
   return out;

@@ -15,9 +15,9 @@
 namespace mgtd::calib::discovery {
 
 enum class LawFinding { pass, law, law_set, library, shape_only, noise_like };
-[[nodiscard]] std::string_view to_string(LawFinding verdict);
+[[nodiscard]] std::string_view to_string(LawFinding finding);
 
-/// The rule of verdict_of() that decided, with the number that it compared.
+/// The rule of finding_of() that decided, with the number that it compared.
 struct LawFindingReason {
   enum class Rule {
     nothing_found,   ///< PASS: log10 p of the search, not below its limit
@@ -89,7 +89,7 @@ struct FoundLaw {
 };
 
 struct DiscoveryReport {
-  LawFinding verdict{LawFinding::pass};
+  LawFinding finding{LawFinding::pass};
   LawFindingReason reason{};
   std::vector<FoundLaw> laws{};  ///< strongest first; the first is found even where it is not believed
   /// Of the search in what is left after the laws; where that or `left_sigmas` would speak against them, both
@@ -115,7 +115,7 @@ struct DiscoveryReport {
 
   /// LAW or LAW-SET: formulas leave nothing.
   [[nodiscard]] bool accounts_for_everything() const {
-    return verdict == LawFinding::law || verdict == LawFinding::law_set;
+    return finding == LawFinding::law || finding == LawFinding::law_set;
   }
 };
 

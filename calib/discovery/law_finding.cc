@@ -58,8 +58,8 @@ double over_random(const FoundLaw& law) { return std::min(law.over_walk, law.ove
 
 }  // namespace
 
-std::string_view to_string(LawFinding verdict) {
-  switch (verdict) {
+std::string_view to_string(LawFinding finding) {
+  switch (finding) {
     case LawFinding::pass:
       return "PASS";
     case LawFinding::law:
@@ -85,7 +85,7 @@ bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first) {
          !std::all_of(first.covariates.begin(), first.covariates.end(), reading);
 }
 
-JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
+JudgedLaws finding_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
                       const DiscoveryReport& report, int looks) {
   using Rule = LawFindingReason::Rule;
   const bool left = report.left_sigmas > kLeft;

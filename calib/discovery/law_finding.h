@@ -5,7 +5,7 @@
 #include "calib/discovery/chosen_law.h"
 #include "calib/discovery/noise_in_force.h"
 
-/// The verdict on a run, from the laws that were found in it and from what is left after them.
+/// finding_of() says what discover() found in a run, from its laws and from what is left after them.
 namespace mgtd::calib::discovery {
 
 /// A recording has one sample a pose, and samples that follow one another are no replicates: what drifts for
@@ -13,12 +13,12 @@ namespace mgtd::calib::discovery {
 [[nodiscard]] bool may_be_drift(const NoiseInForce& in_force, const ChosenLaw& first);
 
 struct JudgedLaws {
-  LawFinding verdict{LawFinding::pass};
+  LawFinding finding{LawFinding::pass};
   LawFindingReason reason{};
 };
 /// `report`: with what is left after the laws. What must stand out does so of all `looks` together; what is
 /// left counts as a single look finds it, because that takes a name away.
-[[nodiscard]] JudgedLaws verdict_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
+[[nodiscard]] JudgedLaws finding_of(const NoiseInForce& in_force, const std::vector<ChosenLaw>& laws,
                                     const DiscoveryReport& report, int looks);
 
 }  // namespace mgtd::calib::discovery

@@ -10,7 +10,7 @@ namespace {
 
 namespace tests = criticism::tests;
 
-/// Correlation from pose to pose that changes no verdict: white noise shows as much.
+/// Correlation from pose to pose that changes no finding: white noise shows as much.
 constexpr double kUncorrelated = 0.1;
 
 NoiseInForce measured(fit::joint::JointFit fit, double rho, tests::NoiseReference noise, bool wanders) {

@@ -46,7 +46,7 @@ Lack Effect::lack_of(const PoseTable& table) const {
   return out;
 }
 
-Result<void> Effect::check(const PoseTable& table) const {
+Result<void> Effect::applicable(const PoseTable& table) const {
   const Lack lack = lack_of(table);
   if (lack.poses == 0) return {};
   return fail(

@@ -112,8 +112,8 @@ class Effect {
   /// The first column that the term needs and this pose has not ("s3_T_degC", "azimuth_deg"); empty when the
   /// term can be evaluated. Where it is not empty the term counts as zero and term() is not called.
   [[nodiscard]] virtual std::string_view missing(const Pose& pose) const = 0;
-  /// What the term needs of the poses of a fit is there; refuses with what is missing.
-  [[nodiscard]] virtual Result<void> check(const PoseTable& table) const;
+  /// Refuses poses that lack what the term needs, and says what is missing.
+  [[nodiscard]] virtual Result<void> applicable(const PoseTable& table) const;
   [[nodiscard]] Lack lack_of(const PoseTable& table) const;
   virtual void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
                     std::span<double> out) const = 0;

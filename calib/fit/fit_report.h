@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/calibration/calibration.h"
-#include "calib/fit/azimuth_origin.h"
+#include "calib/fit/azimuth_gauge.h"
 #include "calib/fit/fit_options.h"
 #include "calib/fit/fit_summary.h"
 #include "calib/fit/outlier_node.h"

@@ -15,7 +15,7 @@ namespace mgtd::calib::report {
 
 /// "random-beside", as JSON names the rule; "none" of a LAW.
 [[nodiscard]] std::string_view rule_name(discovery::LawFindingReason::Rule rule);
-/// One sentence; empty where no rule kept the verdict from being LAW.
+/// One sentence; empty where no rule kept the finding from being LAW.
 [[nodiscard]] std::string reason_text(const discovery::DiscoveryReport& report);
 /// What a person does next. `run` as the person typed it; `kept`: names under which it keeps the formulas
 /// already.

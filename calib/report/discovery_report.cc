@@ -150,7 +150,7 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
 std::string headline(const DiscoveryReport& r) {
   const FoundLaw* law = r.laws.empty() ? nullptr : &r.laws.front();
   const FoundFormula* first = law == nullptr ? nullptr : &law->formulas.front();
-  switch (r.verdict) {
+  switch (r.finding) {
     case LawFinding::pass:
       return "PASS: no formula stands out from noise.";
     case LawFinding::law:
@@ -274,7 +274,7 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
   json laws = json::array();
   for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
   json out{{"schema", "mgt.discover/1"},
-           {"verdict", std::string(discovery::to_string(r.verdict))},
+           {"verdict", std::string(discovery::to_string(r.finding))},
            {"reason",
             {{"rule", std::string(rule_name(r.reason.rule))},
              {"measured", number_or_null(r.reason.measured)},
@@ -324,9 +324,9 @@ std::string to_text(const DiscoveryReport& r, const std::string& run, const std:
     out += wrapped(fmt::format("{} of the {} poses are searched, evenly chosen: a search takes no more",
                                r.searched, r.poses));
   if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
-  const bool show = r.verdict != LawFinding::pass && !r.laws.empty() && r.laws.front().stands_out;
+  const bool show = r.finding != LawFinding::pass && !r.laws.empty() && r.laws.front().stands_out;
   // Of what is not believed the first says enough.
-  const std::size_t told = r.verdict == LawFinding::noise_like ? 1 : r.laws.size();
+  const std::size_t told = r.finding == LawFinding::noise_like ? 1 : r.laws.size();
   for (std::size_t i = 0; show && i < told; ++i) tell_law(r.laws[i], i + 1, told, out);
   if (show && told == r.laws.size())
     fmt::format_to(to, "left after {}: p {}; most on {}, {:.1f} standard deviations of chi-square\n",

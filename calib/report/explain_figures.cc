@@ -142,11 +142,11 @@ figures::Figure price_of(const fit::joint::JointFit& narrow, const fit::joint::J
   const auto sensors = static_cast<std::size_t>(wide.problem.sensors());
   figures::PriceValues v{.sensors = numbered(sensors),
                          .parameters = parameter_names(),
-                         .growth = {},
+                         .sd_ratio = {},
                          .tensor_before_nT_per_m = worst_sd(narrow),
                          .tensor_after_nT_per_m = worst_sd(wide)};
   for (std::size_t s = 0; s < sensors; ++s) {
-    std::vector<double>& row = v.growth.emplace_back();
+    std::vector<double>& row = v.sd_ratio.emplace_back();
     for (std::size_t k = 0; k < v.parameters.size(); ++k) {
       const auto slot = static_cast<Eigen::Index>(s * v.parameters.size() + k);
       row.push_back(std::sqrt(wide.covariance(slot, slot) / narrow.covariance(slot, slot)));

@@ -7,8 +7,8 @@ namespace mgtd::calib::report {
 namespace {
 
 std::string stated(const fit::joint::ReferenceScatter& s) {
-  return s.told ? fmt::format("ref_sd_nT says {:.3g} nT", s.stated_nT)
-                : fmt::format("{:.3g} nT is assumed, since ref_sd_nT is not given", s.stated_nT);
+  return s.stated ? fmt::format("ref_sd_nT says {:.3g} nT", s.stated_nT)
+                  : fmt::format("{:.3g} nT is assumed, since ref_sd_nT is not given", s.stated_nT);
 }
 
 std::string measured(const fit::joint::ReferenceScatter& s) {

@@ -17,7 +17,8 @@ constexpr std::string_view kPrefix = "instrument.";
 std::vector<Check> to_checks(const std::vector<InstrumentIdentity>& instruments) {
   std::vector<Check> out;
   for (const InstrumentIdentity& i : instruments)
-    out.push_back({std::string(kPrefix) + i.place, true, i.told, "the calibration holds for this one", ""});
+    out.push_back(
+        {std::string(kPrefix) + i.place, true, i.identity, "the calibration holds for this one", ""});
   return out;
 }
 

@@ -13,12 +13,12 @@ bool is_sensor(const InstrumentIdentity& i) {
 }
 
 std::string_view model_of(const InstrumentIdentity& i) {
-  return std::string_view(i.told).substr(0, i.told.find(", serial "));
+  return std::string_view(i.identity).substr(0, i.identity.find(", serial "));
 }
 
 std::string named(const InstrumentIdentity& i) {
   const auto serial = serial_of(i);
-  return serial.empty() ? fmt::format("'{}'", i.told) : fmt::format("serial number {}", serial);
+  return serial.empty() ? fmt::format("'{}'", i.identity) : fmt::format("serial number {}", serial);
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ bool InstrumentWatch::is_another(const InstrumentIdentity& wanted) const {
   if (found == answering_.end()) return false;
   const InstrumentIdentity& now = found->second;
   if (!serial_of(wanted).empty() && !serial_of(now).empty()) return serial_of(wanted) != serial_of(now);
-  return !wanted.told.empty() && !now.told.empty() && model_of(wanted) != model_of(now);
+  return !wanted.identity.empty() && !now.identity.empty() && model_of(wanted) != model_of(now);
 }
 
 std::vector<std::string> InstrumentWatch::others() const {

@@ -285,7 +285,7 @@ void add_define(CLI::App& app, Session& session) {
   command->add_flag("--try", args->tried, "examine it, keep nothing");
   command->add_flag("--drop", args->drop, "delete the formula of this name");
   command->add_option("--from", args->from, "run file that keeps the formula: does this run confirm it?");
-  args->flags = add_kept_model_flags(command);
+  args->flags = add_current_model_flags(command);
 }
 
 }  // namespace mgtd::daemon::cli

@@ -77,7 +77,7 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
   }
   if (args.keep && !session.json && names.empty())
     fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", args.run);
-  return found->verdict == LawFinding::shape_only || found->verdict == LawFinding::noise_like ? 1 : 0;
+  return found->finding == LawFinding::shape_only || found->finding == LawFinding::noise_like ? 1 : 0;
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ std::shared_ptr<FitFlags> add_model_flags(CLI::App* command) {
   return f;
 }
 
-std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command) {
+std::shared_ptr<FitFlags> add_current_model_flags(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   add_site_flags(command, *f);
   return f;

@@ -30,7 +30,7 @@ std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
 /// The same for commands that only know the joint fit.
 std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
 /// The same for commands about the model that a run file keeps, and no other.
-std::shared_ptr<FitFlags> add_kept_model_flags(CLI::App* command);
+std::shared_ptr<FitFlags> add_current_model_flags(CLI::App* command);
 /// Those about the field alone.
 void add_field_flags(CLI::App* command, FitFlags& flags);
 /// That about the table's angles alone.

@@ -20,7 +20,7 @@ std::vector<calib::criticism::tests::CandidateEffect> formulas_of(const store::P
     const auto spec = calib::effects::EffectSpec::parse(d.spec);
     if (known || !spec) continue;
     auto candidate = calib::criticism::tests::formula_candidate(*spec, sensors);
-    if (!candidate || !candidate->variants.front()->check(source.table)) continue;
+    if (!candidate || !candidate->variants.front()->applicable(source.table)) continue;
     if (d.exploratory() && d.found_on == calib::poses::data_hash(source.table))
       fmt::print(stderr, "{} was suggested by this run: what is said of it here is exploratory\n", d.name);
     out.push_back(std::move(*candidate));

@@ -72,7 +72,7 @@ Result<std::vector<std::string>> keep_discovery(store::RunFile& file, store::Pos
           .found_on = hash,
           .found = examined->coefficients,
           .confirmed_log10_p = {},
-          .discovered = discovered(law, calib::discovery::to_string(found.verdict), hash)};
+          .discovered = discovered(law, calib::discovery::to_string(found.finding), hash)};
       if (auto kept = keep_formula(file, source, definition); !kept) return tl::unexpected(kept.error());
       names.push_back(spec->name);
     }

@@ -142,7 +142,7 @@ CLI::App* add_mask_command(CLI::App& app, Session& session, const std::string& n
   });
   if (name == "mask") why->required();
   add_who_option(command, args->who);
-  args->flags = add_kept_model_flags(command);
+  args->flags = add_current_model_flags(command);
   return command;
 }
 

@@ -202,7 +202,7 @@ int run_undo(const Session& session, const ModelArguments& args) {
   if (auto ok = keep_step(*run, "undo", last->spec, json::object()); !ok) return report(session, ok.error());
   std::vector<store::ModelStep> all = *steps;
   all.push_back({.at = {}, .who = {}, .action = "undo", .spec = last->spec, .result = {}});
-  const auto model = store::kept_model(all);
+  const auto model = store::current_model(all);
   if (session.json) {
     print_json({{"schema", "mgt.undo/1"},
                 {"undone", {{"action", last->action}, {"spec", last->spec}}},
@@ -235,7 +235,7 @@ int run_model(const Session& session, const ModelArguments& args) {
   if (!steps) return report(session, steps.error());
   const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
-  const auto model = store::kept_model(*steps);
+  const auto model = store::current_model(*steps);
   const auto masked = store::masked_poses(*steps);
   if (session.json) {
     json history = json::array();
@@ -285,7 +285,7 @@ void add_add(CLI::App& app, Session& session) {
   command->add_flag("--force", args->force, "keep it even if these poses speak against it");
   command->add_flag("--try", args->tried, "fit and tell, keep nothing");
   add_who_option(command, args->who);
-  args->flags = add_kept_model_flags(command);
+  args->flags = add_current_model_flags(command);
 }
 
 void add_drop(CLI::App& app, Session& session) {
@@ -298,7 +298,7 @@ void add_drop(CLI::App& app, Session& session) {
   command->add_flag("--force", args->force, "take it out even if held-out poses get worse");
   command->add_flag("--try", args->tried, "fit and tell, keep nothing");
   add_who_option(command, args->who);
-  args->flags = add_kept_model_flags(command);
+  args->flags = add_current_model_flags(command);
 }
 
 void add_undo(CLI::App& app, Session& session) {

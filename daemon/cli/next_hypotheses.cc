@@ -105,10 +105,10 @@ Result<Question> question_by_discovery(const std::string& place, const store::Po
   const auto found = calib::discovery::discover(source.table, {.fit = options, .checks = false});
   if (!found) return tl::unexpected(found.error());
   using calib::discovery::LawFinding;
-  if (found->verdict == LawFinding::pass || found->verdict == LawFinding::noise_like ||
-      found->verdict == LawFinding::library)
+  if (found->finding == LawFinding::pass || found->finding == LawFinding::noise_like ||
+      found->finding == LawFinding::library)
     return out;
-  out.believed = found->verdict != LawFinding::shape_only;
+  out.believed = found->finding != LawFinding::shape_only;
   const auto asked = [&](const calib::discovery::FoundLaw& law) {
     return law.formulas.size() > 1 && (place.empty() || law.formulas.front().where == place);
   };

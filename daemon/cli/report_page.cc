@@ -110,7 +110,7 @@ std::string measured_section(const ReportContent& c) {
   Rows instruments;
   for (const InstrumentIdentity& i : c.instruments) {
     const std::string_view serial = serial_of(i);
-    instruments.push_back({i.place, i.told, serial.empty() ? "not told" : std::string(serial)});
+    instruments.push_back({i.place, i.identity, serial.empty() ? "not told" : std::string(serial)});
   }
   out += instruments.empty()
              ? "<p class=\"quiet\">The file names no instruments.</p>"

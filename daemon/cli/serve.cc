@@ -127,7 +127,7 @@ void add_serve(CLI::App& app, Session& session) {
   command->add_option("RUN|DIR", args->what, "*.mgtrun, a pose table in CSV, or a folder of them")
       ->capture_default_str();
   command->add_option("--port", args->port, "of 127.0.0.1; 0 takes a free one")->capture_default_str();
-  args->flags = add_kept_model_flags(command);
+  args->flags = add_current_model_flags(command);
 }
 
 }  // namespace mgtd::daemon::cli

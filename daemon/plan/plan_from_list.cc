@@ -70,8 +70,8 @@ std::vector<RequestedPose> requested_poses(const calib::poses::PoseList& list) {
   return out;
 }
 
-Result<RunPlan> listed_plan(const RunRequest& request, const PlanOptions& options,
-                            const drivers::TableLimits& limits) {
+Result<RunPlan> plan_from_list(const RunRequest& request, const PlanOptions& options,
+                               const drivers::TableLimits& limits) {
   if (!options.mounts.empty())
     return fail(ErrorCode::refused,
                 "a list of poses does not say how the array is mounted on the table by hand",

@@ -17,7 +17,7 @@ namespace mgtd::daemon::plan {
 ///
 /// Refuses, with file, line and column: a pose outside the table's limits, a number twice; a list for a table
 /// on which the array is mounted by hand, since a list says nothing of that.
-[[nodiscard]] Result<RunPlan> listed_plan(const RunRequest& request, const PlanOptions& options,
-                                          const drivers::TableLimits& limits);
+[[nodiscard]] Result<RunPlan> plan_from_list(const RunRequest& request, const PlanOptions& options,
+                                             const drivers::TableLimits& limits);
 
 }  // namespace mgtd::daemon::plan

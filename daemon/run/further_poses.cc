@@ -27,7 +27,7 @@ FurtherPoses further_poses(const Result<NextPoses>& next, const plan::RunPlan& p
   request.list = "what would settle it";
   request.poses = next->poses;
   for (RequestedPose& pose : request.poses) pose.number = ++last;
-  const auto listed = plan::listed_plan(request, plan.options, limits);
+  const auto listed = plan::plan_from_list(request, plan.options, limits);
   if (listed) {
     out.poses = listed->poses;
   } else {

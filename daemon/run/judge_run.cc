@@ -34,14 +34,14 @@ using calib::discovery::LawFinding;
 
 /// "LAW: z^4 at s3.z"
 std::string discovered_text(const DiscoveryReport& d) {
-  std::string out(to_string(d.verdict));
+  std::string out(to_string(d.finding));
   if (d.accounts_for_everything()) {
     std::vector<std::string> laws;
     for (const calib::discovery::FoundLaw& law : d.laws)
       laws.push_back(fmt::format("{} at {}", law.formulas.front().formula, law.formulas.front().where));
     out += fmt::format(": {}", fmt::join(laws, " and "));
   }
-  if (d.verdict == LawFinding::shape_only || d.verdict == LawFinding::noise_like)
+  if (d.finding == LawFinding::shape_only || d.finding == LawFinding::noise_like)
     out += fmt::format(" ({})", calib::report::reason_text(d));
   return out;
 }
@@ -116,7 +116,7 @@ void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
                                             {.fit = options, .looks = kMostJudgements, .checks = false});
     if (!found) return;
     evidence.discovered = *std::move(found);
-    if (evidence.discovered->verdict != calib::discovery::LawFinding::library ||
+    if (evidence.discovered->finding != calib::discovery::LawFinding::library ||
         evidence.leaves_formulas_open() || evidence.beside.size() == kMostEffects)
       return;
     const calib::discovery::FoundFormula& leading = evidence.discovered->laws.front().formulas.front();
@@ -141,8 +141,8 @@ bool discover_alone(const calib::fit::FitOptions& options, RunEvidence& evidence
 bool RunEvidence::leaves_formulas_open() const {
   if (!discovered) return false;
   const calib::discovery::LawFindingReason& reason = discovered->reason;
-  return discovered->verdict == LawFinding::law_set ||
-         (discovered->verdict == LawFinding::library && !(reason.measured > reason.limit));
+  return discovered->finding == LawFinding::law_set ||
+         (discovered->finding == LawFinding::library && !(reason.measured > reason.limit));
 }
 
 NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) {
@@ -156,14 +156,14 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
                                                   : "the verdict is clear: mgt improve adds what it names";
   } else if (finding == Finding::bad_data) {
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
-  } else if (!open && e.discovered && e.discovered->verdict == LawFinding::law) {
+  } else if (!open && e.discovered && e.discovered->finding == LawFinding::law) {
     out.judgement.next =
         e.formulas_alone ? "a formula accounts for everything: mgt discover says how to keep it"
         : e.beside.empty()
             ? "a formula accounts for the rest: mgt discover says how to keep it"
             : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
                           fmt::join(e.beside, " --with "));
-  } else if (!open && e.discovered && e.discovered->verdict == LawFinding::pass && !e.beside.empty()) {
+  } else if (!open && e.discovered && e.discovered->finding == LawFinding::pass && !e.beside.empty()) {
     out.judgement.next =
         fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.beside, " and "));
   } else if (looks_left <= 0) {

@@ -139,7 +139,7 @@ Result<plan::RunPlan> RunExecutor::plan(const RunRequest& request) const {
   const plan::PlanOptions options = plan_options(config_, request);
   const drivers::TableLimits& limits = hooks_.limits();
   return request.poses.empty() ? plan::make_plan(options, limits)
-                               : plan::listed_plan(request, options, limits);
+                               : plan::plan_from_list(request, options, limits);
 }
 
 plan::Pace RunExecutor::pace() const { return {}; }

@@ -12,7 +12,7 @@ RunIdentity::RunIdentity(const std::vector<InstrumentIdentity>& calibrated,
 }
 
 bool RunIdentity::answers(const InstrumentIdentity& who) {
-  if (who.told.empty()) return false;
+  if (who.identity.empty()) return false;
   const auto known = std::find_if(answering_.begin(), answering_.end(),
                                   [&](const InstrumentIdentity& i) { return i.place == who.place; });
   if (known != answering_.end() && *known == who) return false;

@@ -52,7 +52,9 @@ std::vector<Stage> stages(std::span<const ModelStep> steps) {
 
 }  // namespace
 
-std::vector<std::string> kept_model(std::span<const ModelStep> steps) { return stages(steps).back().model; }
+std::vector<std::string> current_model(std::span<const ModelStep> steps) {
+  return stages(steps).back().model;
+}
 
 std::vector<MaskedPose> masked_poses(std::span<const ModelStep> steps) {
   std::vector<MaskedPose> out;

@@ -27,7 +27,7 @@ struct MaskedPose {
 };
 
 /// Specs, in the order they were put in.
-[[nodiscard]] std::vector<std::string> kept_model(std::span<const ModelStep> steps);
+[[nodiscard]] std::vector<std::string> current_model(std::span<const ModelStep> steps);
 /// By number.
 [[nodiscard]] std::vector<MaskedPose> masked_poses(std::span<const ModelStep> steps);
 /// The step that an undo would take back; empty when none is left.

@@ -61,7 +61,7 @@ Result<PoseSource> read_run(const std::filesystem::path& path, Masked masked) {
     if (!table) return tl::unexpected(table.error());
     const auto steps = file->model_steps();
     if (!steps) return tl::unexpected(steps.error());
-    PoseSource out{std::move(*table), file->header(), kept_model(*steps), {}, masked_poses(*steps)};
+    PoseSource out{std::move(*table), file->header(), current_model(*steps), {}, masked_poses(*steps)};
     if (masked == Masked::left_out) leave_out_masked(out);
     const auto formulas = file->document(kFormulasDocument);
     if (!formulas) return tl::unexpected(formulas.error());

@@ -78,7 +78,7 @@ Answer ask(const PoseTable& table, const UnknownLaw* law, int draws) {
   const auto found = must(discovery::discover(table, {.fit = {}, .draws = draws, .checks = false}));
   const discovery::FoundLaw& first = found.laws.front();
   const FoundFormula& head = first.formulas.front();
-  Answer out{.verdict = found.verdict, .log10_p = first.log10_p, .P = head.P};
+  Answer out{.finding = found.finding, .log10_p = first.log10_p, .P = head.P};
   out.found = first.stands_out;
   out.formula = head.formula + " at " + head.where;
   out.set = first.formulas.size() + first.more;

@@ -18,7 +18,7 @@ inline constexpr double kNoise_nT = 0.05;
 
 /// What was said of one run.
 struct Answer {
-  discovery::LawFinding verdict{discovery::LawFinding::pass};
+  discovery::LawFinding finding{discovery::LawFinding::pass};
   double log10_p{0}, P{0};
   bool found{false};      ///< something stands out from noise
   bool place{false};      ///< on s3.z, as is true

@@ -7,17 +7,17 @@
 namespace mgtd::calib::testing {
 namespace {
 
-discovery::LawFinding verdict_of(const std::string& name) {
+discovery::LawFinding finding_of(const std::string& name) {
   using enum discovery::LawFinding;
-  for (const discovery::LawFinding verdict : {pass, law, law_set, shape_only, noise_like, library})
-    if (discovery::to_string(verdict) == name) return verdict;
-  throw std::runtime_error("'" + name + "' is no verdict");
+  for (const discovery::LawFinding finding : {pass, law, law_set, shape_only, noise_like, library})
+    if (discovery::to_string(finding) == name) return finding;
+  throw std::runtime_error("'" + name + "' is no finding");
 }
 
 }  // namespace
 
 void to_json(nlohmann::json& j, const Answer& a) {
-  j = {{"verdict", discovery::to_string(a.verdict)},
+  j = {{"verdict", discovery::to_string(a.finding)},
        {"log10_p", a.log10_p},
        {"P", a.P},
        {"found", a.found},
@@ -34,7 +34,7 @@ void to_json(nlohmann::json& j, const Answer& a) {
 }
 
 void from_json(const nlohmann::json& j, Answer& a) {
-  a.verdict = verdict_of(j.at("verdict"));
+  a.finding = finding_of(j.at("verdict"));
   a.log10_p = j.at("log10_p"), a.P = j.at("P");
   a.found = j.at("found"), a.place = j.at("place"), a.covariate = j.at("covariate");
   a.first = j.at("first"), a.alike = j.at("alike"), a.in_set = j.at("in_set");

@@ -54,10 +54,10 @@ std::string clean_page(const Extent& extent) {
                               });
     for (const Answer& a : answers)
       if (a.found)
-        fmt::print(stderr, "{}: {} p {:.2f} {}\n", kinds[kind].name, discovery::to_string(a.verdict),
+        fmt::print(stderr, "{}: {} p {:.2f} {}\n", kinds[kind].name, discovery::to_string(a.finding),
                    a.log10_p, a.formula);
     const auto named = [](const Answer& a) {
-      return a.verdict == LawFinding::law || a.verdict == LawFinding::law_set;
+      return a.finding == LawFinding::law || a.finding == LawFinding::law_set;
     };
     out += fmt::format("| {} | {} | {} | {} |\n", kinds[kind].name, n,
                        percent(count_of(answers, [](const Answer& a) { return a.found; }), n),

@@ -23,14 +23,14 @@ std::string lawless_page(const Extent& extent) {
                extent.first_seed + 500'000 + 1000 * l + 17 * static_cast<std::uint64_t>(d), runs,
                [&](std::uint64_t seed) { return ask_of_lawless(lawless()[l], d, seed, extent.draws); });
       const auto said = [&](LawFinding v) {
-        return percent(count_of(answers, [v](const Answer& a) { return a.verdict == v; }), runs);
+        return percent(count_of(answers, [v](const Answer& a) { return a.finding == v; }), runs);
       };
       for (const Answer& a : answers)
-        if (a.verdict != LawFinding::noise_like)
+        if (a.finding != LawFinding::noise_like)
           fmt::print(stderr, "{} d {}: {} P {:.2f} {}; {}\n", lawless()[l].name, d,
-                     discovery::to_string(a.verdict), a.P, a.formula, a.reason);
+                     discovery::to_string(a.finding), a.P, a.formula, a.reason);
       all += runs;
-      named += count_of(answers, [](const Answer& a) { return a.verdict == LawFinding::law; });
+      named += count_of(answers, [](const Answer& a) { return a.finding == LawFinding::law; });
       out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", lawless()[l].name, d,
                          percent(count_of(answers, [](const Answer& a) { return a.found; }), runs),
                          percent(count_of(answers, [](const Answer& a) { return a.place; }), runs),

@@ -73,12 +73,12 @@ std::string rows(const std::vector<UnknownLaw>& laws, std::uint64_t first_seed, 
       std::vector<std::size_t> sets;
       for (const Answer& a : answers) {
         sets.push_back(a.set);
-        if (!a.first || a.verdict != LawFinding::law)
+        if (!a.first || a.finding != LawFinding::law)
           fmt::print(stderr, "{} d {}: {} P {:.2f} {}{}; {}\n", laws[l].name, d,
-                     discovery::to_string(a.verdict), a.P, a.formula, a.in_set ? "" : " (not in set)",
+                     discovery::to_string(a.finding), a.P, a.formula, a.in_set ? "" : " (not in set)",
                      a.reason);
       }
-      const int named = count_of(answers, [](const Answer& a) { return a.verdict == LawFinding::law; });
+      const int named = count_of(answers, [](const Answer& a) { return a.finding == LawFinding::law; });
       out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", laws[l].name, d, rates(answers), median(sets),
                          percent(named, runs), gain_text(answers));
       all[d].insert(all[d].end(), answers.begin(), answers.end());
@@ -93,7 +93,7 @@ std::string sums(const BySize& all) {
       "set, % | LAW wrong, % | P above 0.99 and wrong, % | gain on unseen poses, median (worst) "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [d, answers] : all) {
-    const auto wrong_law = [](const Answer& a) { return a.verdict == LawFinding::law && is_wrong(a); };
+    const auto wrong_law = [](const Answer& a) { return a.finding == LawFinding::law && is_wrong(a); };
     const int sure = count_of(answers, [](const Answer& a) { return a.P > 0.99; });
     const int sure_wrong = count_of(answers, [](const Answer& a) { return a.P > 0.99 && is_wrong(a); });
     out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", d, answers.size(), rates(answers),

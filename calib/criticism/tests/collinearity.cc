@@ -110,7 +110,7 @@ Result<FormulaExamination> examine_formula(const PoseTable& table, const fit::Fi
     auto looking_back = variant->bound({.table = &table, .offset_nT = {}});
     if (!looking_back) return tl::unexpected(looking_back.error());
     if (*looking_back) variant = *std::move(looking_back);
-    if (const auto ok = variant->check(table); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = variant->applicable(table); !ok) return tl::unexpected(ok.error());
     if (const auto ok = effects::check_derivatives(*variant, table); !ok) return tl::unexpected(ok.error());
   }
   const auto fit = fit::joint::fit_joint(table, fit::joint::joint_options(options));

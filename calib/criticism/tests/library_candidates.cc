@@ -136,7 +136,7 @@ CandidateEffects library_candidates(const PoseTable& table, const std::vector<ef
       continue;
     }
     const auto effect = effects::library::make(family, std::nullopt, values.front(), context);
-    const auto ok = effect ? (*effect)->check(table) : tl::unexpected(effect.error());
+    const auto ok = effect ? (*effect)->applicable(table) : tl::unexpected(effect.error());
     if (!ok) {
       std::string why = without_name(ok.error().message, family.name);
       const std::size_t lacking = effect ? (*effect)->lack_of(table).poses : 0;

@@ -268,8 +268,8 @@ void FormulaEffect::term(const Conditions& at, int sensor, std::span<const Jet> 
   }
 }
 
-Result<void> FormulaEffect::check(const PoseTable& table) const {
-  if (const auto ok = Effect::check(table); !ok) return ok;
+Result<void> FormulaEffect::applicable(const PoseTable& table) const {
+  if (const auto ok = Effect::applicable(table); !ok) return ok;
   const std::vector<double> ones(kMaxActive, 1.0);
   for (const Pose& pose : table.poses) {
     for (int sensor = 0; sensor < static_cast<int>(pose.y_nT.size()); ++sensor) {

@@ -38,7 +38,7 @@ class FormulaEffect final : public Effect {
   [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
   /// Also refuses poses at which the formula has no value.
-  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+  [[nodiscard]] Result<void> applicable(const PoseTable& table) const override;
   void term(const Conditions& at, int sensor, std::span<const double> in, std::span<const double> c,
             std::span<double> out) const override;
   void term(const Conditions& at, int sensor, std::span<const Jet> in, std::span<const Jet> c,

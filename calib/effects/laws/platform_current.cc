@@ -64,8 +64,8 @@ std::string_view PlatformCurrent::missing(const Pose& pose) const {
   return {};
 }
 
-Result<void> PlatformCurrent::check(const PoseTable& table) const {
-  if (auto ok = Effect::check(table); !ok) return ok;
+Result<void> PlatformCurrent::applicable(const PoseTable& table) const {
+  if (auto ok = Effect::applicable(table); !ok) return ok;
   for (const std::string& column : columns_) {
     const double first = table.poses.front().covariates.at(column);
     const bool moves = std::any_of(table.poses.begin(), table.poses.end(),

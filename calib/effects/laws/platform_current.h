@@ -22,7 +22,7 @@ class PlatformCurrent final : public PlatformEffect<PlatformCurrent> {
   [[nodiscard]] std::string spec() const override;
   [[nodiscard]] Result<std::shared_ptr<const Effect>> bound(const EffectContext& context) const override;
   [[nodiscard]] std::string_view missing(const Pose& pose) const override;
-  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+  [[nodiscard]] Result<void> applicable(const PoseTable& table) const override;
 
   template <class S>
   void equation(const Conditions& at, int, std::span<const S>, std::span<const S> c, std::span<S> out) const {

@@ -3,14 +3,14 @@
 
 namespace mgtd::calib::effects::laws {
 
-Result<void> Backlash::check(const PoseTable& table) const {
+Result<void> Backlash::applicable(const PoseTable& table) const {
   constexpr std::size_t kOneOf = 10;
   std::size_t without = 0;
   for (const Pose& pose : table.poses) {
-    if (!missing_angle(pose).empty()) return Effect::check(table);
+    if (!missing_angle(pose).empty()) return Effect::applicable(table);
     without += pose.sense ? 0U : 1U;
   }
-  return kOneOf * without <= table.poses.size() ? Result<void>{} : Effect::check(table);
+  return kOneOf * without <= table.poses.size() ? Result<void>{} : Effect::applicable(table);
 }
 
 }  // namespace mgtd::calib::effects::laws

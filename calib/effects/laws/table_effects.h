@@ -72,7 +72,7 @@ class Backlash final : public TableEffect<Backlash> {
   }
   /// A few poses without sense (the first of a run was approached from nowhere) count as midway between the
   /// two: their azimuth is off by beta, which is what the uncertainty of the table's angles is for.
-  [[nodiscard]] Result<void> check(const PoseTable& table) const override;
+  [[nodiscard]] Result<void> applicable(const PoseTable& table) const override;
   template <class S>
   void equation(const Conditions& at, int, std::span<const S>, std::span<const S> c, std::span<S> out) const {
     out[0] = c[0] * S(to_rad(*at.pose.sense));

@@ -21,7 +21,7 @@ class HardIron final : public laws::PlatformEffect<HardIron> {
   static constexpr std::string_view kName = "platform.hard-iron";
   HardIron() : PlatformEffect({{"x", "y", "z"}, "nT", 100, {.scale = Where::Scale::own}}) {}
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
-  [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
+  [[nodiscard]] Result<void> applicable(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
   void equation(const Conditions&, int, std::span<const S>, std::span<const S> h, std::span<S> out) const {
     for (std::size_t i = 0; i < 3; ++i) out[i] = h[i];
@@ -37,7 +37,7 @@ class SoftIron final : public laws::PlatformEffect<SoftIron> {
                         1000,
                         {.scale = Where::Scale::own}}) {}
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
-  [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
+  [[nodiscard]] Result<void> applicable(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
   void equation(const Conditions&, int, std::span<const S> in, std::span<const S> k, std::span<S> out) const {
     for (std::size_t i = 0; i < 3; ++i)
@@ -54,7 +54,7 @@ class Crosstalk final : public EffectOf<Crosstalk> {
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::span<const int> at(int) const override { return {all_.data(), all_.size()}; }
   [[nodiscard]] std::string_view missing(const Pose&) const override { return {}; }
-  [[nodiscard]] Result<void> check(const PoseTable&) const override { return absorbed(name()); }
+  [[nodiscard]] Result<void> applicable(const PoseTable&) const override { return absorbed(name()); }
   template <class S>
   void equation(const Conditions&, int sensor, std::span<const S> in, std::span<const S> k,
                 std::span<S> out) const {

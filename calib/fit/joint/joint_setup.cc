@@ -170,7 +170,7 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   if (!effects) return tl::unexpected(effects.error());
   problem.effects = std::move(*effects);
   for (const effects::EffectPtr& effect : problem.effects) {
-    if (const auto ok = effect->check(table); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = effect->applicable(table); !ok) return tl::unexpected(ok.error());
   }
   const auto fitted = [use](const Pose& pose) { return (pose.set == "check") == (use == PoseUse::check); };
   const auto total = std::count_if(table.poses.begin(), table.poses.end(), fitted);

@@ -89,7 +89,7 @@ std::optional<ReferenceScatter> reference_scatter(const PoseTable& table, const 
   double stated = 0;
   for (const JointPose& pose : fit.problem.poses) {
     stated += std::pow(reference_sd_nT(*pose.pose), 2);
-    out.told = out.told && pose.pose->ref_sd_nT;
+    out.stated = out.stated && pose.pose->ref_sd_nT;
   }
   stated /= static_cast<double>(fit.problem.poses.size());
   out.measured_nT = std::sqrt(std::max(0.0, variance));

@@ -18,7 +18,7 @@ struct JointFit;
 struct ReferenceScatter {
   double measured_nT{0};  ///< standard deviation of a component, or of the size
   double stated_nT{0};    ///< root mean square of ref_sd_nT
-  bool told{true};        ///< the table has ref_sd_nT; else stated_nT is the default
+  bool stated{true};      ///< the table has ref_sd_nT; else stated_nT is the default
   bool by_scalar{false};  ///< against f_nT, not the sensors
   /// The two differ by a factor of two or more, and by five standard deviations of the measured variance.
   bool differs{false};

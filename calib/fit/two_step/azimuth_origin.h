@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "calib/fit/azimuth_origin.h"
+#include "calib/fit/azimuth_gauge.h"
 #include "calib/fit/two_step/step2.h"
 
 /// The gauge of step 2. The standard set leaves one turn about Z common to the four sensors: the direction D

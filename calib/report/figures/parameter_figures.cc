@@ -122,7 +122,7 @@ Figure history_figure(const HistoryValues& v) {
 Figure price_figure(const PriceValues& v) {
   Drawing drawing("price", 820, 230);
   std::vector<double> all{1};
-  for (const auto& sensor : v.growth) all.insert(all.end(), sensor.begin(), sensor.end());
+  for (const auto& sensor : v.sd_ratio) all.insert(all.end(), sensor.begin(), sensor.end());
   Axis x{.label = "parameter", .range = {-0.6, static_cast<double>(v.parameters.size()) - 0.4}, .names = {}};
   for (std::size_t k = 0; k < v.parameters.size(); ++k)
     x.names.push_back({static_cast<double>(k), v.parameters[k]});
@@ -134,12 +134,12 @@ Figure price_figure(const PriceValues& v) {
   double most = 1;
   std::string where = "none";
   const double step = 0.7 / static_cast<double>(std::max<std::size_t>(1, v.sensors.size()));
-  for (std::size_t s = 0; s < v.growth.size(); ++s) {
+  for (std::size_t s = 0; s < v.sd_ratio.size(); ++s) {
     Series series{.name = v.sensors[s], .tone = sensor_tone(s), .shape = sensor_shape(s)};
-    for (std::size_t k = 0; k < v.growth[s].size(); ++k) {
+    for (std::size_t k = 0; k < v.sd_ratio[s].size(); ++k) {
       series.x.push_back(static_cast<double>(k) + step * (static_cast<double>(s) + 0.5) - 0.35);
-      series.y.push_back(v.growth[s][k]);
-      if (v.growth[s][k] > most) most = v.growth[s][k], where = v.sensors[s] + "." + v.parameters[k];
+      series.y.push_back(v.sd_ratio[s][k]);
+      if (v.sd_ratio[s][k] > most) most = v.sd_ratio[s][k], where = v.sensors[s] + "." + v.parameters[k];
     }
     plot.marks(series, 3);
   }
@@ -160,7 +160,7 @@ Figure price_figure(const PriceValues& v) {
   for (const std::string& s : v.sensors) out.data.head.push_back(s);
   for (std::size_t k = 0; k < v.parameters.size(); ++k) {
     std::vector<std::string> row{v.parameters[k]};
-    for (const auto& sensor : v.growth) row.push_back(short_number(sensor[k]));
+    for (const auto& sensor : v.sd_ratio) row.push_back(short_number(sensor[k]));
     out.data.rows.push_back(std::move(row));
   }
   out.svg = drawing.finished(out.title, out.caption);

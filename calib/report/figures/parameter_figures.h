@@ -24,7 +24,7 @@ struct HistoryValues {
 /// Price: standard error of each parameter with the effects in the model over that without them.
 struct PriceValues {
   std::vector<std::string> sensors{}, parameters{};
-  std::vector<std::vector<double>> growth{};                   ///< by sensor, by parameter
+  std::vector<std::vector<double>> sd_ratio{};                 ///< by sensor, by parameter
   double tensor_before_nT_per_m{0}, tensor_after_nT_per_m{0};  ///< standard error of the worst component
 };
 [[nodiscard]] Figure price_figure(const PriceValues& values);

@@ -41,7 +41,7 @@ Hidden on(int channel, const std::function<double(const Pose&)>& law) {
 TEST(Discover, NoiseHasNoLaw) {
   for (const std::uint64_t seed : {4U, 5U, 6U}) {
     const DiscoveryReport r = found_in({}, seed);
-    EXPECT_EQ(r.verdict, LawFinding::pass) << report::to_text(r, "run.csv");
+    EXPECT_EQ(r.finding, LawFinding::pass) << report::to_text(r, "run.csv");
     EXPECT_EQ(r.reason.rule, Rule::nothing_found);
     EXPECT_EQ(r.reason.measured, r.laws.front().log10_p);
     EXPECT_GT(r.hypotheses, 15'000U);
@@ -71,7 +71,7 @@ TEST(Discover, AsksAsManyQuestionsWhateverTheUnitOfAColumn) {
 TEST(Discover, NamesAHarmonicOfTheAzimuth) {
   const DiscoveryReport r =
       found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4, true);
-  ASSERT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+  ASSERT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
   const FoundLaw& law = r.laws.front();
   EXPECT_EQ(law.formulas.front().formula, "a*sind(3*azimuth_deg) + b*cosd(3*azimuth_deg)");
   EXPECT_EQ(law.formulas.front().where, "s2.z");
@@ -94,7 +94,7 @@ TEST(Discover, ALargeLawOfAnglesMayScatterAsTheyDo) {
     std::normal_distribution<double> by_rad(0, to_rad(0.1));
     const DiscoveryReport r = found_in(
         on(5, [&](const Pose& p) { return 8 * std::sin(3 * (*p.azimuth_rad + by_rad(rng)) + 0.6); }), seed);
-    EXPECT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+    EXPECT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
   }
 }
 
@@ -107,12 +107,12 @@ TEST(Discover, AnOscillationNeedsTwoPeriods) {
     EXPECT_THAT(r.laws.front().formulas.front().formula, HasSubstr("sin(2*pi*t_h/"));
     if (period_s > 1000) {
       EXPECT_EQ(r.reason.rule, Rule::few_periods) << report::to_text(r, "run.csv");
-      EXPECT_EQ(r.verdict, LawFinding::shape_only);
+      EXPECT_EQ(r.finding, LawFinding::shape_only);
       EXPECT_NEAR(r.reason.measured, 4680 / period_s, 0.05);
       EXPECT_THAT(report::to_json(r, "run.csv").at("reason").at("text").get<std::string>(),
                   HasSubstr("a law needs 2"));
     } else {
-      EXPECT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+      EXPECT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
     }
   }
 }
@@ -161,7 +161,7 @@ TEST(Discover, NamesAnOscillationOfTheGradient) {
       rig::effect_of("name = 'hidden.gradient-oscillation'\nnT_per_m = 25\nperiod_s = 540").value());
   const PoseTable run = rig::simulated_table(scenario, rig::run_of_157({.senses = true}, 59), 59);
   const DiscoveryReport r = must(discover(run, {.fit = {}, .draws = 300, .checks = true}));
-  ASSERT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+  ASSERT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
   const FoundFormula& first = r.laws.front().formulas.front();
   EXPECT_EQ(first.where, "site gradient");
   EXPECT_NEAR(*first.inner, 540 / 3600.0, 1e-4);
@@ -209,7 +209,7 @@ TEST(Discover, AnUnrecordedLoadIsNoLaw) {
                                           return rng() % 2 == 0 ? 0.15 : 0.0;
                                         }),
                                      7);
-  EXPECT_EQ(r.verdict, LawFinding::noise_like) << report::to_text(r, "run.csv");
+  EXPECT_EQ(r.finding, LawFinding::noise_like) << report::to_text(r, "run.csv");
   EXPECT_LT(r.laws.front().over_jumps, 0);
   EXPECT_GT(r.laws.front().jumps_P, 0.99);
   EXPECT_LT(r.laws.front().formulas.front().P, 0.01) << "jumps stand in its place";
@@ -225,14 +225,14 @@ TEST(Discover, AnOffsetThatWalksIsNoLaw) {
   std::normal_distribution<double> normal;
   for (int k = 0; k <= 200; ++k) offset[k] = now += 0.03 * normal(rng);
   const DiscoveryReport r = found_in(on(3, [offset](const Pose& p) { return offset.at(p.number); }), 8);
-  EXPECT_EQ(r.verdict, LawFinding::noise_like) << report::to_text(r, "run.csv");
+  EXPECT_EQ(r.finding, LawFinding::noise_like) << report::to_text(r, "run.csv");
 }
 
 /// A law a hundred times the noise hides the noise from the tests until it is in the model.
 TEST(Discover, ALargeLawDoesNotHideTheNoise) {
   const DiscoveryReport r =
       found_in(on(5, [](const Pose& p) { return 12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 4);
-  EXPECT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+  EXPECT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
   EXPECT_GT(r.laws.front().d, 500);
 }
 
@@ -245,7 +245,7 @@ TEST(Discover, ALawBesideAnUnrecordedLoadIsOnlyAShape) {
                     return (rng() % 2 == 0 ? 0.15 : 0.0) + 0.4 * std::sin(3 * *p.azimuth_rad);
                   }),
                7);
-  EXPECT_EQ(r.verdict, LawFinding::shape_only) << report::to_text(r, "run.csv");
+  EXPECT_EQ(r.finding, LawFinding::shape_only) << report::to_text(r, "run.csv");
   EXPECT_EQ(r.laws.front().covariates.front().name, "azimuth_deg");
   EXPECT_EQ(r.reason.rule, Rule::random_beside);
   EXPECT_GT(r.reason.measured, 0);
@@ -263,7 +263,7 @@ TEST(Discover, CountsTheWholeSet) {
   for (const FoundFormula& formula : law.formulas) P += formula.P;
   EXPECT_LT(P, 0.9);
   EXPECT_GT(law.more, 100U);
-  r.verdict = LawFinding::law_set, law.stands_out = true;
+  r.finding = LawFinding::law_set, law.stands_out = true;
   EXPECT_THAT(report::to_text(r, "run.csv"), HasSubstr(fmt::format("and {} more in the", 32 + law.more)));
 }
 
@@ -271,7 +271,7 @@ TEST(Discover, CountsTheWholeSet) {
 TEST(Discover, WhatIsLeftSaysNothingAgainstTheFormula) {
   const DiscoveryReport r =
       found_in(on(5, [](const Pose& p) { return 0.12 * std::sin(3 * *p.azimuth_rad + 0.6); }), 8);
-  ASSERT_EQ(r.verdict, LawFinding::law) << report::to_text(r, "run.csv");
+  ASSERT_EQ(r.finding, LawFinding::law) << report::to_text(r, "run.csv");
   const FoundLaw& law = r.laws.front();
   EXPECT_LT(law.over_nothing_beside, 0);
   EXPECT_GT(law.over_nothing_beside, -10) << "chosen so that an offset beside the law has some probability";
@@ -286,8 +286,8 @@ TEST(Discover, NamesLessAtEachOfSeveralLooks) {
   EXPECT_EQ(once.laws.front().log10_p, often.laws.front().log10_p);
   EXPECT_LT(once.laws.front().log10_p, -2.05);
   EXPECT_GT(once.laws.front().log10_p, -2.65);
-  EXPECT_NE(once.verdict, LawFinding::pass) << report::to_text(once, "run.csv");
-  EXPECT_EQ(often.verdict, LawFinding::pass) << report::to_text(often, "run.csv");
+  EXPECT_NE(once.finding, LawFinding::pass) << report::to_text(once, "run.csv");
+  EXPECT_EQ(often.finding, LawFinding::pass) << report::to_text(often, "run.csv");
   EXPECT_FALSE(often.laws.front().stands_out);
 }
 

@@ -10,7 +10,7 @@ namespace mgtd::calib::testing {
 namespace {
 
 Answer some_answer() {
-  return {.verdict = discovery::LawFinding::law_set,
+  return {.finding = discovery::LawFinding::law_set,
           .log10_p = -12.1,  // has no finite binary expansion
           .P = 0.7,
           .found = true,
@@ -30,7 +30,7 @@ Answer some_answer() {
 TEST(DiscoveryAnswer, ComesBackFromItsJsonAsItWas) {
   const Answer back = nlohmann::json::parse(nlohmann::json(some_answer()).dump()).get<Answer>();
   const Answer a = some_answer();
-  EXPECT_EQ(back.verdict, a.verdict);
+  EXPECT_EQ(back.finding, a.finding);
   EXPECT_EQ(back.log10_p, a.log10_p);
   EXPECT_EQ(back.P, a.P);
   EXPECT_EQ(back.found, a.found);

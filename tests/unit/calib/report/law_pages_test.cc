@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 /// A LAW-SET of two formulas over the temperature, with its curve.
-DiscoveryReport found(LawFinding verdict) {
+DiscoveryReport found(LawFinding finding) {
   discovery::FoundLaw law{.more = 3, .log10_p = -20, .stands_out = true, .d = 12, .walk_P = 0.01};
   law.covariates = {{"T", 0.99}, {"t_h", 0.01}};
   law.where = {{"s3.z", 1.0}};
@@ -32,7 +32,7 @@ DiscoveryReport found(LawFinding verdict) {
                                   .sd_nT = {0.1, 0.1, 0.1},
                                   .simultaneous = 2.5,
                                   .formulas = {{"T^2", {0, 0.31, 1.4}}}};
-  return {.verdict = verdict, .laws = {law}};
+  return {.finding = finding, .laws = {law}};
 }
 
 TEST(LawPages, SayTheFormulaWhatElseItCouldBeAndHowSureThatIs) {

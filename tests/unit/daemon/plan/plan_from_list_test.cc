@@ -30,7 +30,7 @@ Result<RunPlan> plan_of(const std::string& text, const PlanOptions& options = {}
   const auto received = parse_run_request(to_json(request));
   if (!received) return tl::unexpected(received.error());
   EXPECT_EQ(*received, request);
-  return listed_plan(*received, options, limits());
+  return plan_from_list(*received, options, limits());
 }
 
 Pose pose(double azimuth_deg, double pitch_deg, double roll_deg) {
@@ -97,14 +97,14 @@ TEST(ListedPlan, WhatCannotBeMeasuredIsRefusedWithItsPlace) {
 TEST(ListedPlan, AListThatBypassedTheFileIsCheckedToo) {
   RunRequest request;
   request.poses = {{.number = 3}, {.number = 3}};
-  const auto twice = listed_plan(request, {}, limits());
+  const auto twice = plan_from_list(request, {}, limits());
   ASSERT_FALSE(twice);
   EXPECT_THAT(twice.error().message, HasSubstr("3 was already given"));
   PlanOptions mounted;
   mounted.mounts = {{}};
   request.poses = {{.number = 3}};
-  EXPECT_FALSE(listed_plan(request, mounted, limits()));
-  EXPECT_TRUE(listed_plan(request, {}, limits()));
+  EXPECT_FALSE(plan_from_list(request, mounted, limits()));
+  EXPECT_TRUE(plan_from_list(request, {}, limits()));
 }
 
 TEST(ListedPlan, PosesAndSetsExcludeOneAnother) {

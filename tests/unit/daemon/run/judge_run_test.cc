@@ -112,7 +112,7 @@ TEST(JudgeRun, FormulasAreToldApartLikeEffects) {
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::LawFinding::law_set;
+  found.finding = calib::discovery::LawFinding::law_set;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(2);
   found.laws.front().formulas.front().formula = "z^4";
@@ -132,7 +132,7 @@ TEST(JudgeRun, ALawEndsIt) {
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::LawFinding::law;
+  found.finding = calib::discovery::LawFinding::law;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(1);
   const NextPoses out =
@@ -148,7 +148,7 @@ TEST(JudgeRun, AFormulaThatAccountsForEverythingTakesThePlaceOfNames) {
   explained.finding = Finding::partial;
   explained.named = {"site.step"};
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::LawFinding::law;
+  found.finding = calib::discovery::LawFinding::law;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(1);
   found.laws.front().formulas.front().formula = "t_h^2";
@@ -173,11 +173,11 @@ TEST(JudgeRun, APartThatIsOpenIsToldApart) {
   NextReport next;
   next.effect = "a", next.alternative = "b";
   next.steps = {step("approached from both sides", 7, 0.97, true)};
-  for (const auto verdict : {calib::discovery::LawFinding::law, calib::discovery::LawFinding::shape_only}) {
-    found.verdict = verdict;
+  for (const auto finding : {calib::discovery::LawFinding::law, calib::discovery::LawFinding::shape_only}) {
+    found.finding = finding;
     const NextPoses out =
         next_poses({.table = table, .explained = explained, .next = next, .discovered = found}, 30, 4);
-    EXPECT_THAT(out.judgement.next, HasSubstr("7 minutes, to tell a from b")) << to_string(verdict);
+    EXPECT_THAT(out.judgement.next, HasSubstr("7 minutes, to tell a from b")) << to_string(finding);
     EXPECT_EQ(out.poses.size(), 10U);
   }
 }
@@ -187,7 +187,7 @@ TEST(JudgeRun, AnEffectThatLeadsByLittleLeavesFormulasOpen) {
   const PoseTable table = ten_poses();
   const ExplainReport explained;
   calib::discovery::DiscoveryReport found;
-  found.verdict = calib::discovery::LawFinding::library;
+  found.finding = calib::discovery::LawFinding::library;
   found.reason = {calib::discovery::LawFindingReason::Rule::library, 0.5, 0.98};
   RunEvidence evidence{.table = table, .explained = explained, .next = {}, .discovered = found};
   EXPECT_TRUE(evidence.leaves_formulas_open());
@@ -205,7 +205,7 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
   NextPoses out = next_poses(evidence, 30, 4);
   EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
   EXPECT_THAT(out.judgement.next, HasSubstr("nothing is left beside axis.cubic@s3.z"));
-  evidence.discovered->verdict = calib::discovery::LawFinding::law;
+  evidence.discovered->finding = calib::discovery::LawFinding::law;
   evidence.discovered->laws.emplace_back();
   evidence.discovered->laws.front().formulas.resize(1);
   out = next_poses(evidence, 30, 4);

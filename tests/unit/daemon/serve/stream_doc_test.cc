@@ -12,12 +12,13 @@
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 #include "tests/support/event_loop.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::daemon::serve {
 namespace {
 
 std::string python_of(const std::string& document) {
-  const std::string all = mgtd::testing::slurp(document);
+  const std::string all = mgtd::testing::whole_file(document);
   const std::string fence = "```python\n";
   const std::size_t begin = all.find(fence);
   if (begin == std::string::npos) return {};

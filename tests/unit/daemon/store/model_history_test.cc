@@ -26,13 +26,13 @@ ModelStep step(std::string action, std::string spec) {
 
 TEST(KeptModel, IsWhatTheStepsLeadTo) {
   std::vector<ModelStep> steps;
-  EXPECT_THAT(kept_model(steps), IsEmpty());
+  EXPECT_THAT(current_model(steps), IsEmpty());
   EXPECT_FALSE(undoable(steps));
   steps.push_back(step("add", "axis.cubic@s3.z"));
   steps.push_back(step("add", "site.gradient"));
-  EXPECT_THAT(kept_model(steps), ElementsAre("axis.cubic@s3.z", "site.gradient"));
+  EXPECT_THAT(current_model(steps), ElementsAre("axis.cubic@s3.z", "site.gradient"));
   steps.push_back(step("drop", "axis.cubic@s3.z"));
-  EXPECT_THAT(kept_model(steps), ElementsAre("site.gradient"));
+  EXPECT_THAT(current_model(steps), ElementsAre("site.gradient"));
 }
 
 TEST(KeptModel, UndoGoesBackStepByStepAndNotBeyondTheBeginning) {
@@ -40,15 +40,15 @@ TEST(KeptModel, UndoGoesBackStepByStepAndNotBeyondTheBeginning) {
   ASSERT_TRUE(undoable(steps));
   EXPECT_EQ(undoable(steps)->action, "drop");
   steps.push_back(step("undo", "a"));
-  EXPECT_THAT(kept_model(steps), ElementsAre("a", "b")) << "the order it had";
+  EXPECT_THAT(current_model(steps), ElementsAre("a", "b")) << "the order it had";
   EXPECT_EQ(undoable(steps)->spec, "b");
   steps.push_back(step("undo", "b"));
   steps.push_back(step("undo", "a"));
   steps.push_back(step("undo", "?"));
-  EXPECT_THAT(kept_model(steps), IsEmpty());
+  EXPECT_THAT(current_model(steps), IsEmpty());
   EXPECT_FALSE(undoable(steps));
   steps.push_back(step("add", "c"));
-  EXPECT_THAT(kept_model(steps), ElementsAre("c"));
+  EXPECT_THAT(current_model(steps), ElementsAre("c"));
 }
 
 TEST(KeptModel, LivesInTheRunFileBesideWhatWasMeasured) {

@@ -261,14 +261,14 @@ inline HistoryValues history_example() {
 inline PriceValues price_example() {
   PriceValues out{.sensors = {"s1", "s2", "s3", "s4"},
                   .parameters = parameters_example(),
-                  .growth = {},
+                  .sd_ratio = {},
                   .tensor_before_nT_per_m = 0.41,
                   .tensor_after_nT_per_m = 0.43};
   for (std::size_t s = 0; s < 4; ++s) {
-    std::vector<double> growth;
+    std::vector<double> sd_ratio;
     for (std::size_t k = 0; k < 12; ++k)
-      growth.push_back(s == 2 && k == 11 ? 1.9 : 1 + 0.02 * std::abs(noise_at(12 * s + k)));
-    out.growth.push_back(growth);
+      sd_ratio.push_back(s == 2 && k == 11 ? 1.9 : 1 + 0.02 * std::abs(noise_at(12 * s + k)));
+    out.sd_ratio.push_back(sd_ratio);
   }
   return out;
 }
