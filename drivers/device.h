@@ -12,8 +12,9 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// A Device is a value: bytes, time and requests come in; bytes to send and events come out. No port, no
-/// clock, no thread: `port_link` carries the bytes, tests feed them by hand, and both see the same behaviour.
+/// A Device is the driver of one instrument: bytes, time and requests come in; bytes to send and events come
+/// out. It has no port, no clock and no thread: `port_link` carries the bytes, tests feed them by hand, and
+/// both see the same behaviour.
 namespace mgtd::drivers {
 
 class Device {

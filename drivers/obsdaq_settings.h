@@ -18,10 +18,11 @@
 ///   profile = "mag-13-100"      mag-03-R or mag-13-R, R = 70, 100, 250, 500, 1000 uT for +-10 V; or
 ///   scale_nT_per_V = [x, y, z]
 ///   offset_nT = [0, 0, 0]       added after scaling
-///   inputs.q.name = "motor_A"   column of the auxiliary input q (or p, r); sN_T_degC: temperature of sensor
-///   N inputs.q.unit = "A" inputs.q.scale, offset = 0  column = scale * volts + offset; the scale may be left
-///   out where the unit is V temperature = "none"        input of this sensor's own thermometer: "p", "q",
-///   "r". In short for the above degC_per_V, degC_at_0V = 0  its line; the slope is needed with an input
+///   inputs.q.name = "motor_A"   column of the auxiliary input q (or p, r); sN_T_degC: sensor N's temperature
+///   inputs.q.unit = "A"
+///   inputs.q.scale, offset = 0  column = scale * volts + offset; no scale is needed where the unit is V
+///   temperature = "none"        input of this sensor's own thermometer, "p", "q" or "r", as a short form
+///   degC_per_V, degC_at_0V = 0  its line; the slope is needed with an input
 ///
 /// Profiles are nominal figures of the sensor family; what a sensor really does is the calibration's affair.
 namespace mgtd::drivers::obsdaq {

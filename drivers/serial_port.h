@@ -5,9 +5,9 @@
 
 #include "proto/error.h"
 
-/// A SerialPort is open: 8N1, without flow control; a read waits for at least one byte, and the descriptor is
-/// non-blocking and not inherited. Exclusive: TIOCEXCL (but on a pty), and flock against root, whom TIOCEXCL
-/// does not stop.
+/// A SerialPort is a serial line that is open: 8N1, without flow control; a read waits for at least one byte,
+/// and the descriptor is non-blocking and not inherited. Exclusive: TIOCEXCL (but on a pty), and flock
+/// against root, whom TIOCEXCL does not stop.
 ///
 /// Real ports are opened and set up by libserialport. It refuses ptys (they have no entry in /sys/class/tty),
 /// so these are opened by plain termios. Names are those of port_list.h: a path, a link to one (as udev makes

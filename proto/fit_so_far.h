@@ -5,8 +5,9 @@
 
 namespace mgtd {
 
-/// What a fit of the poses measured so far says beside the accuracy of the tensor: its residual, and the
-/// standard deviations of the parameters, of each kind the largest over all sensors. NaN: not known.
+/// FitSoFar holds what a fit of the poses measured so far says beside the accuracy of the tensor: its
+/// residual, and the standard deviations of the parameters, of each kind the largest over all sensors. NaN:
+/// not known.
 struct FitSoFar {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 

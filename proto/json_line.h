@@ -5,8 +5,8 @@
 
 #include "proto/error.h"
 
-/// JSON objects that are lines of text. One of a peer may be anything: it is read as an object, or what is
-/// wrong with it is said.
+/// These functions read and write JSON objects that are lines of text. A line of a peer may be anything: it
+/// is read as an object, or what is wrong with it is said.
 namespace mgtd {
 
 /// Broken JSON is refused with the position; so is JSON that is no object, or nests too deeply. `example` is

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <initializer_list>
 
-/// One value for each sensor of the array, in the order s1, s2, ...
+/// PerSensor holds one value for each sensor of the array, in the order s1, s2, ...
 namespace mgtd {
 
 inline constexpr int kSensors = 4;  ///< of the cross, the array that is meant where none is described

@@ -4,7 +4,7 @@
 
 namespace mgtd {
 
-/// The text without blanks, tabs and carriage returns at either end.
+/// trimmed() returns the text without blanks, tabs and carriage returns at either end.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
   const auto from = text.find_first_not_of(kBlanks);

@@ -8,10 +8,9 @@
 #include "daemon/store/run_file.h"
 #include "proto/instrument_identity.h"
 
-/// The instruments that a run was measured with, and that its calibration therefore holds for. They are among
-/// the checks, one for each: "instrument.s2", measured "obsDAQ V5.5.7, serial 1002". So they are kept in the
-/// run file (stage "instruments") and among the calibration's checks, are part of its id, and are read by
-/// every version.
+/// A calibration holds for the instruments that its run was measured with; they are kept as checks, one for
+/// each: "instrument.s2", measured "obsDAQ V5.5.7, serial 1002". So they stand in the run file (stage
+/// "instruments") and among the calibration's checks, are part of its id, and are read by every version.
 namespace mgtd::daemon::acquire {
 
 inline constexpr const char* kInstrumentsStage = "instruments";

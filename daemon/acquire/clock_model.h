@@ -6,7 +6,7 @@
 
 #include "daemon/acquire/feasible_lines.h"
 
-/// When a free-running device took its sample number k, on the host's monotonic clock.
+/// A ClockModel estimates when a free-running device took its sample number k, on the host's monotonic clock.
 ///
 ///     arrival_k = a + b k + delay_k,   0 <= delay_k <= D
 ///

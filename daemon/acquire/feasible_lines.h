@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-/// The straight lines t(k) = t0 + b k, sample time against sample number, that no observation excludes: a
-/// convex polygon in the plane of offset and period. Each observation is a half-plane: t(k) <= t, or t(k) >=
-/// t. Whatever the polygon says of a sample's time is a bound, not an estimate (set-membership estimation: M.
-/// Milanese, A. Vicino, Automatica 27 (1991) 997).
+/// FeasibleLines holds the straight lines t(k) = t0 + b k, sample time against sample number, that no
+/// observation excludes: a convex polygon in the plane of offset and period. Each observation is a
+/// half-plane: t(k) <= t, or t(k) >= t. Whatever the polygon says of a sample's time is a bound, not an
+/// estimate (set-membership estimation: M. Milanese, A. Vicino, Automatica 27 (1991) 997).
 ///
 /// The period may wander: allow_wander() widens the set by so much. At most kMost corners are kept; beyond
 /// that an edge is given up, so that the set grows and stays a bound. Storage and time are bounded.

@@ -8,8 +8,8 @@
 
 #include "proto/instrument_identity.h"
 
-/// Whether the sensors that answer are those that a calibration, or a run, was made with. Pure: who answers
-/// where comes in, the places with another sensor come out.
+/// An InstrumentWatch tells whether the sensors that answer are those that a calibration, or a run, was made
+/// with. Pure: who answers where comes in, the places with another sensor come out.
 ///
 /// Two devices are the same where both tell the same serial number; one that tells none is another one where
 /// its model differs, and is not judged where it does not. Only sensors are judged: a table or a

@@ -10,8 +10,8 @@
 #include "proto/input_value.h"
 #include "proto/reading.h"
 
-/// The last reading of every auxiliary input and of every sensor's thermometer, by column. A reading that is
-/// older than kFreshInput says nothing of now.
+/// LatestInputs keeps the last reading of every auxiliary input and of every sensor's thermometer, by column.
+/// A reading that is older than kFreshInput says nothing of now.
 namespace mgtd::daemon::acquire {
 
 inline constexpr auto kFreshInput = std::chrono::seconds(120);  ///< twice the slowest asking

@@ -15,11 +15,11 @@
 #include "daemon/acquire/sampler.h"
 #include "daemon/config/config.h"
 
-/// From readings to what is streamed: sampler, tensor with the active calibration, and what the stream says
-/// of that calibration. Where a sensor is not the one that was calibrated in its place, by what the devices
-/// tell or by what the readings show, the samples are raw and say `identity`.
-/// Pure: the daemon and the replay of a journal run the very same, and from the same
-/// readings, ticks and orders it makes the same samples to the last bit.
+/// A LivePipeline turns readings into what is streamed: epochs, the tensor with the active calibration, and
+/// what the stream says of that calibration. Where a sensor is not the one that was calibrated in its place,
+/// by what the devices tell or by what the readings show, the samples are raw and say `identity`. Pure: the
+/// daemon and the replay of a journal run the very same, and from the same readings, ticks and orders it
+/// makes the same samples to the last bit.
 namespace mgtd::daemon::acquire {
 
 /// As the configuration wants it.

@@ -16,9 +16,9 @@
 #include "proto/raw_log.h"
 #include "proto/tensor_encoder.h"
 
-/// A journal of raw bytes made into the stream again: the drivers, the sampler and the tensor of the daemon
-/// get the same bytes, ticks and orders at the same times and say the same, TENSOR and GAP lines to the last
-/// byte. Pure: the time is the journal's. Needs the journal from its first record on.
+/// A Replay makes the stream again from a journal of raw bytes: the drivers, the sampler and the tensor of
+/// the daemon get the same bytes, ticks and orders at the same times and say the same, TENSOR and GAP lines
+/// to the last byte. Pure: the time is the journal's. It needs the journal from its first record on.
 ///
 /// Whether it went as it did then is checked as well: what the drivers want to send must be what was sent.
 namespace mgtd::daemon::acquire {

@@ -13,7 +13,7 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// Free-running streams of readings, one a sensor, to epochs on one clock.
+/// The Sampler turns free-running streams of readings, one for each sensor, into epochs on one clock.
 ///
 /// The grid is the samples of the reference sensor (s1). Each other sensor is interpolated linearly between
 /// its two real neighbouring samples, on sample times from its own clock model; where it lies closer to one

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-/// Is a sensor measuring, or does it say the same again and again?
+/// StuckSensor decides whether a sensor still measures or repeats its last reading again and again.
 ///
 /// Noise makes readings differ: that all three axes repeat to the last bit is rare, how rare depends on
 /// resolution against noise and is learnt from the stream itself. With p the share of readings that begin a

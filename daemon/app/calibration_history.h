@@ -8,8 +8,8 @@
 #include "calib/report/parameter_history.h"
 #include "daemon/store/calibration_store.h"
 
-/// The history of a rig's calibrations, as `calibrations.history` answers it: who decided what, and how the
-/// parameters moved from one calibration to the next.
+/// CalibrationHistory answers `calibrations.history` with the history of a rig's calibrations: who decided
+/// what, and how the parameters moved from one calibration to the next.
 ///
 ///   {"decisions":[{"t","event","id","origin","forced","why","by"}],
 ///    "moves":[parameter_history.h], "figure":{"name","title","svg","caption","good"} or null,

@@ -33,8 +33,10 @@
 /// DaemonApp is the service: it tells the core what happens at ports, sockets and clock, and does what the
 /// core decides.
 ///
-/// Order of starting: store, sockets, console, ports. Order of stopping: run (table stops), ports, sockets,
-/// worker, journal. Everything is on the one thread of the io_context but the solver.
+/// Order of starting: store, sockets, console, ports. Order of stopping: run (table stops), ports, console,
+/// sockets, journal, worker. Everything runs on the one thread of the io_context but two things: the worker
+/// has a thread for the computations of a run (fits, judgements, what accuracy to expect), and the journal
+/// and the samples on disk have one that syncs them (disk_sync.h). The console computes in child processes.
 namespace mgtd::daemon::app {
 
 class DaemonApp : private core::CoreActions {

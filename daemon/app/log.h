@@ -7,7 +7,7 @@
 
 #include "proto/time.h"
 
-/// What the service writes to journald or stderr.
+/// These functions write the service's log to journald or stderr.
 namespace mgtd::daemon::app {
 
 /// Level: debug, info, warn, error. Under systemd lines carry no time of their own: the journal stamps them.

@@ -13,8 +13,8 @@
 #include "proto/journal_note.h"
 #include "proto/status_report.h"
 
-/// Recording is what the rig records all the time: the journal of raw bytes and the stream's samples on disk,
-/// as far as the configuration wants them. Stops recording where the disk's reserve is touched.
+/// Recording writes the journal of raw bytes and the stream's samples to disk all the time, as far as the
+/// configuration wants them. It stops where the disk's reserve is touched.
 namespace mgtd::daemon::app {
 
 class Recording {

@@ -4,10 +4,10 @@
 
 #include "proto/time.h"
 
-/// Whether the service manager is to be told that all is well: only while the data path moves. Epochs, or
-/// honest gaps, must have come out since the last time; before the first epoch there is nothing that could.
-/// Pure, and asked once a second: an event loop that hangs does not ask, and one that lives on while the data
-/// stand still gets no.
+/// WatchdogFeed decides when the service manager is told that all is well: only while the data path moves.
+/// Epochs, or honest gaps, must have come out since the last time; before the first epoch there is nothing
+/// that could. Pure, and asked once a second: an event loop that hangs does not ask, and one that lives on
+/// while the data stand still gets no.
 namespace mgtd::daemon::app {
 
 class WatchdogFeed {

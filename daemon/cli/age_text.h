@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-/// How long something has been so, as short as a column needs it.
+/// These functions write how old something is, in few enough words for a column of a table.
 namespace mgtd::daemon::cli {
 
 /// "8 s", "12 min", "5 h", "3 days": to a whole unit, of which there are at least two.

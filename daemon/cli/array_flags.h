@@ -8,8 +8,9 @@
 #include "calib/sensor/geometry.h"
 #include "proto/error.h"
 
-/// --baseline and --array: where the sensors stand. Without either, what the run file says counts; then the
-/// cross for four sensors, and the origin for one. The places of any other array must be given.
+/// The options --baseline and --array say where the sensors stand. Without either, what the run file says
+/// counts; then the cross for four sensors, and the origin for one. The places of any other array must be
+/// given.
 namespace mgtd::daemon::cli {
 
 struct ArrayFlags {

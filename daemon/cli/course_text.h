@@ -3,8 +3,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-/// The course of a run (proto/run_course.h) for people: a few lines for a terminal; and what the run wrote
-/// down of itself (proto/run_log.h), one line an entry.
+/// These functions write the course of a run (proto/run_course.h) as a few lines for a terminal, and what the
+/// run wrote down of itself (proto/run_log.h) as one line for each entry.
 namespace mgtd::daemon::cli {
 
 [[nodiscard]] std::string course_text(const nlohmann::json& course);

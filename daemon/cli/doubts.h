@@ -8,7 +8,8 @@
 #include "daemon/store/model_history.h"
 #include "daemon/store/pose_source.h"
 
-/// Doubts are what is still open about the model that a run file keeps: see calib/criticism/search/choice.h.
+/// These functions find what is still in doubt about the model that a run file keeps: see
+/// calib/criticism/search/choice.h.
 namespace mgtd::daemon::cli {
 
 /// How the model of RUN came to be; empty for a pose table.

@@ -8,7 +8,7 @@
 #include "calib/report/figures/figure.h"
 #include "daemon/cli/command.h"
 
-/// --figures[=FOLDER]: the pictures of an answer, in its JSON object and as SVG files in a folder.
+/// The option --figures[=FOLDER] adds figures to an answer, in its JSON object and as SVG files in a folder.
 namespace mgtd::daemon::cli {
 
 struct FiguresFlag {

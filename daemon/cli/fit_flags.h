@@ -11,8 +11,8 @@
 #include "daemon/cli/array_flags.h"
 #include "daemon/store/pose_source.h"
 
-/// Every command with a fit understands these options; this also says how they combine with what a run file
-/// states.
+/// FitFlags holds the options that every command with a fit understands; this header also says how they
+/// combine with what a run file states.
 namespace mgtd::daemon::cli {
 
 struct FitFlags {

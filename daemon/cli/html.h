@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-/// Tables and style of the report's page. Figures come with their own (calib/report/figures).
+/// These functions write the tables and the style of the report's page. Figures bring a style of their own
+/// (calib/report/figures).
 namespace mgtd::daemon::cli {
 
 /// Light, dark as the screen asks for it, and printed on A4.

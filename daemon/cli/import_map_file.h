@@ -6,7 +6,8 @@
 #include "calib/poses/import_map.h"
 #include "proto/error.h"
 
-/// The file that `mgt import --columns` reads: an ImportMap in TOML.
+/// `mgt import --columns` reads a TOML file that says which columns of a file of readings become which
+/// columns of the pose table (ImportMap).
 ///
 ///     [columns]                       # of the pose table, each from a column of the file
 ///     s1_x_nT = {from = "mag_x", unit = "uT", sign = -1}

@@ -4,7 +4,7 @@
 
 namespace mgtd::daemon::cli {
 
-/// From now on these signals are remembered instead of ending the program, and a system call that waits
+/// After this call these signals are remembered and no longer end the program, and a system call that waits
 /// (for a line of the keyboard) ends when one comes: std::signal would have it go on.
 void catch_interrupts(std::initializer_list<int> signals);
 /// Whether one came.

@@ -7,7 +7,7 @@
 #include "calib/discovery/discovery_report.h"
 #include "daemon/cli/kept_run.h"
 
-/// `mgt discover --keep`: what was found becomes part of the run file.
+/// `mgt discover --keep` makes what it found part of the run file.
 namespace mgtd::daemon::cli {
 
 /// Keeps the search for the report, and of a LAW or LAW-SET the leading formula of each law with how probable

@@ -8,7 +8,8 @@
 #include "calib/fit/method_choice/fit.h"
 #include "daemon/store/pose_source.h"
 
-/// What `mgt next` tells apart where a formula is among it, and the model without any of that.
+/// These functions gather the hypotheses that `mgt next` tells apart where a formula is among them, and the
+/// model without any of them.
 namespace mgtd::daemon::cli {
 
 struct Question {

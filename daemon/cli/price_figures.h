@@ -5,7 +5,7 @@
 #include "calib/criticism/search/model_stage.h"
 #include "calib/report/figures/figure.h"
 
-/// What the effects of a model cost and what leaving them out would do, drawn.
+/// price_figures() draws what the effects of a model cost and what leaving them out would do.
 namespace mgtd::daemon::cli {
 
 /// `stage`: the fit with the effects. Empty where the fit without them refuses; without impacts where none

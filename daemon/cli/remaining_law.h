@@ -12,7 +12,8 @@
 #include "daemon/store/pose_source.h"
 #include "proto/error.h"
 
-/// The last stage of `mgt explain` and `mgt improve`: the formula of what the effects of the library leave.
+/// `mgt explain` and `mgt improve` end by looking for the formula of what the effects of the library leave
+/// unexplained.
 namespace mgtd::daemon::cli {
 
 struct RemainingLaw {

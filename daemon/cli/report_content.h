@@ -17,7 +17,7 @@
 #include "daemon/store/pose_source.h"
 #include "proto/instrument_identity.h"
 
-/// Everything that the report of a run shows, as values and drawn figures.
+/// ReportContent holds everything that the report of a run shows, as values and drawn figures.
 namespace mgtd::daemon::cli {
 
 struct ReportWishes {

@@ -5,7 +5,7 @@
 #include "calib/criticism/search/explain.h"
 #include "calib/report/figures/figure.h"
 
-/// Figures of a search for what is missing.
+/// These functions draw the figures of a search for what a model lacks.
 namespace mgtd::daemon::cli {
 
 /// What could be missing, and the evidence for the first of it.

@@ -8,9 +8,10 @@
 
 namespace mgtd::daemon::cli {
 
-/// The commands that make the model kept in a run the one that a law was searched beside: `mgt drop` for what
-/// was not in it, `mgt add` for what was. A law is added to the kept model, and without the others it is not
-/// the law that was found. None where the two are the same, or the run keeps no model.
+/// commands_to_model() lists the commands that turn the model kept in a run into the one beside which a law
+/// was searched: `mgt drop` for what was not in it, `mgt add` for what was. A law is added to the kept model,
+/// and without the others it is not the law that was found. There are none where the two are the same, or the
+/// run keeps no model.
 [[nodiscard]] std::vector<std::string> commands_to_model(
     const std::vector<calib::effects::EffectPtr>& searched, const store::PoseSource& source,
     const std::string& run);

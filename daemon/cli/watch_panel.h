@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-/// The panel that `mgt watch` shows on a terminal: the last sample of the stream with its standard
-/// deviations, the devices, the judgement of the calibration, what was missed, and a run that is going on. It
-/// makes text from the objects of the stream and draws nothing.
+/// WatchPanel writes the panel that `mgt watch` shows on a terminal: the last sample of the stream with its
+/// standard deviations, the devices, the judgement of the calibration, what was missed, and a run that is
+/// going on. It makes text from the objects of the stream and draws nothing.
 namespace mgtd::daemon::cli {
 
 class WatchPanel {

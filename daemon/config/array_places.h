@@ -11,8 +11,8 @@
 #include "drivers/settings.h"
 #include "proto/error.h"
 
-/// Where the sensors of an array stand, as the operator writes it, in the platform frame, metres, in the
-/// order s1, s2, ...:
+/// The section [array] says where the sensors of an array stand, as the operator writes it, in the platform
+/// frame, metres, in the order s1, s2, ...:
 ///
 ///     [array]
 ///     positions_m = [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]]

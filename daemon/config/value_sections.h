@@ -8,8 +8,8 @@
 
 namespace mgtd::daemon::config {
 
-/// A section of the configuration that holds values and no device: `read` puts them into the configuration
-/// and leaves what is wrong with them in the settings.
+/// A ValueSection is a section of the configuration that holds values and no device: `read` puts them into
+/// the configuration and leaves what is wrong with them in the settings.
 struct ValueSection {
   std::string_view name;
   void (*read)(drivers::Settings& settings, Config& config);

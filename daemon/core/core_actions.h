@@ -11,8 +11,8 @@
 #include "proto/slot.h"
 #include "proto/tensor.h"
 
-/// CoreActions is all that the core asks to be done: by the daemon on ports, disk and sockets, by tests in
-/// memory.
+/// CoreActions lists everything that the core can ask for: the daemon does it on ports, disk and sockets,
+/// tests do it in memory.
 namespace mgtd::daemon::core {
 
 /// A line for the operator's log.

@@ -6,8 +6,8 @@
 #include "proto/reading.h"
 #include "proto/units.h"
 
-/// From which side the azimuth comes to a pose: backlash of the table and hysteresis of the cores show only
-/// where both sides occur.
+/// These functions choose from which side the azimuth comes to a pose: backlash of the table and hysteresis
+/// of the cores show only where both sides occur.
 namespace mgtd::daemon::plan {
 
 inline constexpr double kApproach_rad = to_rad(5);  ///< overshoot

@@ -6,7 +6,8 @@
 
 namespace mgtd::daemon::run {
 
-/// "azimuth 90.00, pitch -45.00, roll 0.00 deg": to a hundredth of a degree, zero without a sign.
+/// angles_text() writes angles as "azimuth 90.00, pitch -45.00, roll 0.00 deg": to a hundredth of a degree,
+/// zero without a sign.
 [[nodiscard]] std::string angles_text(const TableAngles& angles);
 
 }  // namespace mgtd::daemon::run

@@ -13,7 +13,7 @@
 #include "proto/pose.h"
 #include "proto/time.h"
 
-/// One dwell: epochs while the table stood still, in; one row of the pose table, out.
+/// A Dwell makes one row of the pose table from the epochs that were measured while the table stood still.
 ///
 /// mean per axis over the n epochs whose time lies in the dwell; sd of one sample and n_eff such that
 ///     sd^2 / n_eff = variance of the mean = scatter^2 (1 + 2 sum of autocorrelations) / n

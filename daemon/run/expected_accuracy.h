@@ -10,9 +10,9 @@
 #include "proto/pose.h"
 #include "proto/run_course.h"
 
-/// The accuracy that a plan leads one to expect from pose to pose: from the attitudes of its first n poses
-/// (experiment_design.h) and the noise of a pose mean, as the first measured pose shows it and the plan's
-/// mean dwell makes it,
+/// These functions predict how accurate a run will be after the first n poses of its plan: from their
+/// attitudes (experiment_design.h) and the noise of a pose mean, as the first measured pose shows it and the
+/// plan's mean dwell makes it,
 ///
 ///     noise^2 = mean over the axes of sd^2 / n  x  dwell of that pose / mean dwell of the plan
 ///

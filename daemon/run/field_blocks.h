@@ -9,8 +9,9 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// The field while the table stands, in blocks: the mean of every axis over half a second, and the readings
-/// of the scalar reference. What changes between blocks, beyond their noise, is the field itself.
+/// FieldBlocks keeps the field in blocks while the table stands: the mean of every axis over half a second,
+/// and the readings of the scalar reference. What changes between blocks, beyond their noise, is the field
+/// itself.
 namespace mgtd::daemon::run {
 
 class FieldBlocks {

@@ -6,8 +6,9 @@
 #include "daemon/run/field_blocks.h"
 #include "daemon/run/field_disturbance.h"
 
-/// Guards the field while the table stands: does it change during a dwell (FieldDisturbance), is it at
-/// another level than at the pose before, and has it been calm for long enough to go on? Time comes in.
+/// A FieldGuard watches the field while the table stands: does it change during a dwell (FieldDisturbance),
+/// is it at another level than at the pose before, and has it been calm for long enough to go on? Time comes
+/// in.
 namespace mgtd::daemon::run {
 
 struct FieldGuardConfig {

@@ -6,8 +6,8 @@
 #include "daemon/run/run_events.h"
 #include "drivers/device.h"
 
-/// What a run that goes on until it is explained may still do, and the poses of a judgement as its table can
-/// take them.
+/// These functions say how long a run that goes on until it is explained may still take, and turn the poses
+/// that a judgement asks for into a plan for its table.
 namespace mgtd::daemon::run {
 
 struct LooksLeft {

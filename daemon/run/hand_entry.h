@@ -11,8 +11,8 @@
 #include "proto/operator_prompt.h"
 #include "proto/pose.h"
 
-/// What a run asks its operator to set by hand, and what was entered: the mounting of the array on the table,
-/// the scales of a table without motors, a note to carry out.
+/// HandEntry keeps what a run asks its operator to set by hand and what the operator entered: the mounting of
+/// the array on the table, the scales of a table without motors, a note to carry out.
 ///
 /// An entry that is far from what was asked for is asked for again, and so is one that disagrees with the
 /// turn of the field since the poses before it (RotationConsistency). The same entry a second time is the

@@ -7,9 +7,9 @@
 #include "proto/error.h"
 #include "proto/run_course.h"
 
-/// A KeptCourse is what a run gained that its poses do not tell again: how well the tensor was known after so
-/// many of them, and what disturbed it. It is kept as a document of the run file, so that a run that another
-/// life of the daemon resumes still has it:
+/// A KeptCourse holds what a run learnt and its poses do not tell again: how well the tensor was known after
+/// so many of them, and what disturbed it. It is kept as a document of the run file, so that a run that
+/// another life of the daemon resumes still has it:
 ///
 ///   {"accuracy":[{"poses":18,"sd_nT_per_m":[xx,yy,zz,xy,xz,yz],"residual_nT",
 ///                 "offset_sd_nT","scale_sd","angle_sd_rad","parameter_sd":[..]}, ...],

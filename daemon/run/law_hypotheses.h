@@ -9,7 +9,8 @@
 
 namespace mgtd::daemon::run {
 
-/// More of them are not compared: the first hold all but a few percent of the probability.
+/// No more hypotheses than kMostHypotheses are compared: the first hold all but a few percent of the
+/// probability.
 inline constexpr std::size_t kMostHypotheses = 8;
 
 /// The formulas of a law that discover() leaves open, as hypotheses that a further measurement could tell

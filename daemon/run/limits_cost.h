@@ -10,10 +10,10 @@
 #include "drivers/device.h"
 #include "proto/error.h"
 
-/// What the limits of a table cost a run in accuracy: the expected standard errors of the run within the
-/// limits (calib/design/experiment_design.h), beside those of the same run, with as many poses, on the same
-/// axes without limits: azimuth and roll a whole turn, pitch from -90 to 90 deg. An axis that the table does
-/// not have is no limit.
+/// LimitsCost says how much accuracy the limits of a table cost a run: it holds the expected standard errors
+/// of the run within the limits (calib/design/experiment_design.h) beside those of the same run, with as many
+/// poses, on the same axes without limits: azimuth and roll a whole turn, pitch from -90 to 90 deg. An axis
+/// that the table does not have is no limit.
 namespace mgtd::daemon::run {
 
 struct LimitsCost {

@@ -10,7 +10,8 @@
 
 namespace mgtd::daemon::run {
 
-/// The poses that a run of this configuration would measure, with their times, as a table without readings.
+/// planned_poses() lists the poses that a run of this configuration would measure, with their times, as a
+/// table without readings.
 [[nodiscard]] Result<PoseTable> planned_poses(const config::Config& config);
 
 /// The same for a run with these options on a table with these limits.

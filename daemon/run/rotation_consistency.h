@@ -7,7 +7,7 @@
 #include "proto/pose.h"
 #include "proto/reading.h"
 
-/// Does an angle that was entered by hand agree with the turn of the field?
+/// RotationConsistency checks whether an angle that was entered by hand agrees with the turn of the field.
 ///
 /// Between two poses the field turns, in the eyes of a sensor, by the angle between its two readings, however
 /// the sensor is mounted. The entered attitudes R_j, R_k say n' R_j' R_k n for its cosine, n the direction of

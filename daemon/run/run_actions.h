@@ -11,7 +11,7 @@
 #include "proto/reading.h"
 #include "proto/run_status.h"
 
-/// All that a run can ask for, to be carried out in the order given.
+/// An Action is anything that a run can ask for; actions are carried out in the order given.
 namespace mgtd::daemon::run {
 
 struct HomeTable {};

@@ -15,7 +15,7 @@
 #include "proto/instrument_identity.h"
 #include "proto/units.h"
 
-/// Settings of one calibration run, beside its plan; angles in radians, times in seconds.
+/// RunConfig holds the settings of one calibration run, beside its plan; angles in radians, times in seconds.
 namespace mgtd::daemon::config {
 struct Config;
 }  // namespace mgtd::daemon::config

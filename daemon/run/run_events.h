@@ -14,7 +14,7 @@
 #include "proto/run_status.h"
 #include "proto/slot.h"
 
-/// An Event is all that can happen to a run.
+/// An Event is anything that can happen to a run.
 namespace mgtd::daemon::run {
 
 enum class Request { pause, resume, abort, finish, redo };  ///< of the operator

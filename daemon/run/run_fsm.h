@@ -18,8 +18,9 @@
 #include "daemon/run/table_track.h"
 #include "daemon/run/wiring_watch.h"
 
-/// A calibration run as a state machine: events and the time in, actions out. It reads no clock and touches
-/// nothing; the caller carries out the actions in their order and brings the answers back as events.
+/// RunFsm is a calibration run as a state machine: events and the time go in, actions come out. It reads no
+/// clock and touches nothing; the caller carries out the actions in their order and brings the answers back
+/// as events.
 ///
 ///     preflight -> homing -> [ asking? -> moving -> settling -> dwelling -> stored ]* -> judging? -> solving
 ///                                                        |  A           A                    |          |

@@ -8,8 +8,9 @@
 #include "proto/check.h"
 #include "proto/instrument_identity.h"
 
-/// Who measures in a run: the sensors that the active calibration was made with, and those that the run began
-/// with. By what the devices tell of themselves, and by what the stream concludes from their readings.
+/// RunIdentity tells whether a run is measured with the sensors that the active calibration was made with,
+/// and with those that it began with. It goes by what the devices tell of themselves, and by what the stream
+/// concludes from their readings.
 ///
 /// A sensor that is not the calibrated one fails the check `identity` of the first preflight; the operator
 /// may mean it so and resume. One that is not the one that this run began with fails it for as long as it is

@@ -7,9 +7,9 @@
 
 #include "proto/error.h"
 
-/// A RunJudgement is what the poses of a run said when all that were planned had been measured, and what was
-/// done about it. A run that goes on until its residual is explained keeps one for each look, in order, as a
-/// document of its file:
+/// A RunJudgement records what the poses of a run said when all that were planned had been measured, and what
+/// was done about it. A run that goes on until its residual is explained keeps one for each look, in order,
+/// as a document of its file:
 ///
 ///   [ {"poses":157,"found":"AMBIGUOUS: ...","next":"24 more poses ...","minutes":12.5}, ... ]
 namespace mgtd::daemon::run {

@@ -12,7 +12,8 @@
 #include "proto/run_status.h"
 #include "proto/time.h"
 
-/// The phases of a calibration run, each with what only it needs. Which follows which: run_fsm.h.
+/// These are the phases of a calibration run, each with what only it needs; run_fsm.h says which follows
+/// which.
 namespace mgtd::daemon::run {
 namespace phase {
 

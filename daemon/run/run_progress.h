@@ -8,9 +8,9 @@
 #include "daemon/plan/run_plan.h"
 #include "proto/time.h"
 
-/// How much of a plan is done, which pose is under way and how often it failed, and how long the rest will
-/// take. The estimate starts from the table's speed and learns from every pose: what it took beside its
-/// dwell, against what was foreseen.
+/// RunProgress keeps how much of a plan is done, which pose is under way and how often it failed, and how
+/// long the rest will take. The estimate starts from the table's speed and learns from every pose: what it
+/// took beside its dwell, against what was foreseen.
 namespace mgtd::daemon::run {
 
 class RunProgress {

@@ -8,8 +8,8 @@
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_header.h"
 
-/// How the daemon and the offline tool call the fit: the same options from the same run file give the same
-/// answer.
+/// The daemon and the offline tool both call the fit through these functions: the same options from the same
+/// run file give the same answer.
 namespace mgtd::daemon::run {
 
 /// The options a run file states; the rest as the fit's defaults.

@@ -6,7 +6,8 @@
 #include "proto/reading.h"
 #include "proto/time.h"
 
-/// What the table has reported: where it is, how it came there, and since when it rests. Angles in radians.
+/// TableTrack keeps what the table has reported: where it is, how it came there, and since when it rests.
+/// Angles in radians.
 namespace mgtd::daemon::run {
 
 class TableTrack {

@@ -9,9 +9,9 @@
 #include "proto/pose.h"
 #include "proto/units.h"
 
-/// Sensors that are mounted or wired another way than the others, from raw readings of a few attitudes: which
-/// of the 48 signed permutations S makes y = S y_reference, and R(table)' S' y the same field in every
-/// attitude? The reference is the sensor that most others agree with.
+/// Wiring finds sensors that are mounted or wired another way than the others, from raw readings in a few
+/// attitudes: which of the 48 signed permutations S makes y = S y_reference, and R(table)' S' y the same
+/// field in every attitude? The reference is the sensor that most others agree with.
 ///
 /// Sensors that are not calibrated yet differ by some percent of the field, so a permutation is told from
 /// another where it changes the reading by more than kTolerance of it. What one attitude leaves open, the

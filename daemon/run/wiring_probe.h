@@ -14,10 +14,10 @@
 #include "proto/slot.h"
 #include "proto/time.h"
 
-/// Which sensor is on which arm? The operator holds a magnet to the end of one arm after the other; the
-/// sensor that moves most is the one there. Nothing in the readings of a uniform field says it, and two
-/// swapped cables turn the tensor into another that looks as good. An array that is no cross has places
-/// instead of arms.
+/// A WiringProbe finds out which sensor is on which arm: the operator holds a magnet to the end of one arm
+/// after the other, and the sensor whose reading changes most is the one there. Nothing in the readings of a
+/// uniform field says it, and two swapped cables turn the tensor into another that looks as good. An array
+/// that is no cross has places instead of arms.
 ///
 ///     resting -> [ waiting -> leaving ] x N -> done          each with a limit of time: then "timed out"
 ///

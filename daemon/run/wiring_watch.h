@@ -8,8 +8,8 @@
 #include "proto/check.h"
 #include "proto/pose.h"
 
-/// The wiring as the poses of a run show it, said when the turns of the table have shown it, and again when
-/// further ones show more.
+/// WiringWatch reports from the poses of a run how the sensors are wired, once the turns of the table have
+/// shown it, and again when further ones show more.
 namespace mgtd::daemon::run {
 
 class WiringWatch {

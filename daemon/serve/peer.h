@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-/// A Peer is one connected peer that speaks in lines, over a socket (line_connection.h) or a WebSocket
-/// (console/web_peer.h). Writing never blocks. Everything runs on the io_context's thread.
+/// A Peer is the other end of a connection and speaks in lines, over a socket (line_connection.h) or a
+/// WebSocket (console/web_peer.h). Writing never blocks. Everything runs on the io_context's thread.
 namespace mgtd::daemon::serve {
 
 class Peer {

@@ -8,8 +8,9 @@
 
 #include "proto/error.h"
 
-/// What `mgt discover --keep` found on a run is kept in its file (document "discovery"): the object of the
-/// search (mgt.discover/1) and of which poses and which model that was asked. A later search takes its place.
+/// A run file keeps what `mgt discover --keep` found on the run (document "discovery"): the object of the
+/// search (mgt.discover/1), and of which poses and which model that was asked. A later search takes its
+/// place.
 namespace mgtd::daemon::store {
 
 inline constexpr std::string_view kDiscoveryDocument = "discovery";

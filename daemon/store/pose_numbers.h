@@ -7,7 +7,8 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// Numbers of poses as an operator writes them: "3", "3,7-9". Spaces do not count.
+/// These functions read and write numbers of poses as an operator writes them: "3", "3,7-9". Spaces do not
+/// count.
 namespace mgtd::daemon::store {
 
 /// Refuses what is no list of numbers, a range that goes backwards, and more than a hundred thousand of them.

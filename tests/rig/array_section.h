@@ -7,7 +7,8 @@
 
 namespace mgtd::rig {
 
-/// This reads where the sensors are, platform frame: [array] of a scenario. Empty: the cross.
+/// read_positions() reads where the sensors are, in the platform frame, from [array] of a scenario; no
+/// positions mean the cross.
 [[nodiscard]] std::vector<Eigen::Vector3d> read_positions(Section& array);
 
 }  // namespace mgtd::rig

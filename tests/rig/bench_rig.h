@@ -10,9 +10,9 @@
 #include "tests/rig/wire.h"
 #include "tests/rig/world.h"
 
-/// This is the whole rig in virtual time: one world, and a cable to each instrument. Tests drive it byte by
-/// byte; the server puts it on ptys. The same scenario and the same bytes at the same times give the same
-/// bytes back.
+/// A BenchRig is the whole simulated rig in virtual time: one world, and a cable to each instrument. Tests
+/// drive it byte by byte; the server puts it on ptys. The same scenario and the same bytes at the same times
+/// give the same bytes back.
 namespace mgtd::rig {
 
 class BenchRig {

@@ -6,8 +6,8 @@
 
 namespace mgtd::rig {
 
-/// What a hand does to the surroundings of a rig (BenchRig::surroundings), and how long it then waits for it
-/// to have worked, on the rig's clock.
+/// A Deed says what a hand does to the surroundings of a rig (BenchRig::surroundings), and how long it then
+/// waits for the effect, on the rig's clock.
 struct Deed {
   std::vector<std::string> lines;
   double wait_s{0};

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-/// This is the other end of a running rig's socket.
+/// These functions send one line to the socket of a running rig and return its answer.
 namespace mgtd::rig {
 
 [[nodiscard]] std::string fault_socket(const std::string& dir);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-/// A Motion is how an array goes that no table carries: by hand, in an aircraft, on a disc.
+/// A Motion moves an array that no table carries: by hand, in an aircraft, on a disc.
 namespace mgtd::rig {
 
 enum class MotionKind {

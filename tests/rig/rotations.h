@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-/// The rig has its own rotations; they are passive: the components of a fixed vector after the frame is
-/// turned.
+/// The rig has its own rotation matrices; they are passive: they give the components of a fixed vector after
+/// the frame is turned.
 namespace mgtd::rig {
 
 inline constexpr double kDeg = std::numbers::pi / 180.0;

@@ -4,8 +4,8 @@
 
 namespace mgtd::rig {
 
-/// What a scenario file may say, section by section, every effect with its keys, and the exit codes: the foot
-/// of mgt-rig --help.
+/// scenario_help() writes the foot of mgt-rig --help: what a scenario file may say, section by section, every
+/// effect with its keys, and the exit codes.
 [[nodiscard]] std::string scenario_help();
 
 }  // namespace mgtd::rig

@@ -7,7 +7,7 @@
 
 namespace mgtd::rig {
 
-/// A VectorReference says the field as a vector, in axes of its own:
+/// A VectorReference measures the field as a vector, in axes of its own:
 ///
 ///     R r = b + noise,   R = Rz(rz) Ry(ry) Rx(rx)
 ///

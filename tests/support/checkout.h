@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-/// Where this checkout and the programs built from it stand. Only `checkout.cc` is compiled with these paths,
-/// so that everything else compiles to the same bytes in every checkout, and a compiler cache serves them
-/// all.
+/// These functions tell where this checkout and the programs built from it are. Only `checkout.cc` is
+/// compiled with these paths, so that everything else compiles to the same bytes in every checkout, and a
+/// compiler cache serves them all.
 namespace mgtd::testing {
 
 /// The absolute path of a file of the source tree: source_path("docs/stream.md").

@@ -7,7 +7,7 @@
 
 namespace mgtd::test {
 
-/// As long as it lives this thread, and those that it begins, have one processor.
+/// As long as a OneProcessor lives, its thread, and those that this one starts, have one processor.
 class OneProcessor {
  public:
   OneProcessor() {

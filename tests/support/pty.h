@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-/// This is the instrument's end of a pseudo terminal whose other end is found under a path of the test's
-/// choice.
+/// A PtyMaster is the instrument's end of a pseudo-terminal whose other end is found under a path of the
+/// test's choice.
 namespace mgtd::testing {
 
 class PtyMaster {

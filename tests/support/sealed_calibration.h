@@ -4,7 +4,8 @@
 
 #include "calib/calibration/calibration.h"
 
-/// A calibration of a cross without errors, measured at a given time, with a plain covariance.
+/// sealed_calibration() makes a calibration of a cross without errors, measured at a given time, with a plain
+/// covariance.
 namespace mgtd::testing {
 
 inline constexpr double kOffsetSd_nT = 0.1, kScaleSd = 1e-6, kAngleSd_rad = 1e-6;

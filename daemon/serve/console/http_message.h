@@ -11,8 +11,8 @@
 #include "daemon/serve/console/host_rule.h"
 #include "proto/error.h"
 
-/// Requests and answers of the console as HTTP has them: what the rules read from a head, and the headers
-/// that every answer carries.
+/// These functions handle the requests and answers of the console as HTTP has them: what the rules read from
+/// a head, and the headers that every answer carries.
 namespace mgtd::daemon::serve::console {
 
 using Request = boost::beast::http::request<boost::beast::http::string_body>;

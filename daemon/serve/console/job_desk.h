@@ -15,7 +15,7 @@
 #include "daemon/serve/console/run_folder.h"
 #include "drivers/clock.h"
 
-/// The job desk is what the workbench asks:
+/// The job desk answers the requests of the workbench:
 ///
 ///     GET    /runs              run files and pose tables of the folder
 ///     POST   /jobs              a request (job_request.h): 202 {"job":7}

@@ -13,9 +13,9 @@
 #include "proto/input_value.h"
 #include "proto/tensor.h"
 
-/// The history of the stream for its lanes: mean, least and greatest value of every channel in bins of time,
-/// for a day, in bounded memory; decimated here, so that a page gets no more columns than it draws. Spikes
-/// stay visible as the range of their bin.
+/// LaneHistory keeps the history of the stream for the lanes of the page: mean, least and greatest value of
+/// every channel in bins of time, for a day, in bounded memory; decimated here, so that a page gets no more
+/// columns than it draws. Spikes stay visible as the range of their bin.
 ///
 ///     bins of 2 s for 6 h, bins of 10 s for 24 h; each begins at a multiple of its length since 1970
 ///

@@ -10,7 +10,8 @@ struct PageFile {
   std::string_view bytes;
 };
 
-/// A file of page/, as it was when the daemon was built; nothing where there is none of that name.
+/// page_file() returns a file of page/ as it was when the daemon was built; nothing where there is none of
+/// that name.
 [[nodiscard]] std::optional<PageFile> page_file(std::string_view name);
 
 }  // namespace mgtd::daemon::serve::console

@@ -7,7 +7,8 @@
 
 #include "proto/time.h"
 
-/// The refusals of control and of computations at the console: wrong tokens, and callers from elsewhere.
+/// Refusals counts how often the console refused control or a computation: to wrong tokens, and to callers
+/// from elsewhere.
 ///
 /// Each is counted. The log hears of the first, and then at most once a minute, with how many there were
 /// since its last line; so a program that guesses tokens fills no disk. Pure.

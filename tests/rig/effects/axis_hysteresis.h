@@ -8,8 +8,8 @@
 
 namespace mgtd::rig {
 
-/// This core remembers where it came from: the play operator p <- max(x - w, min(x + w, p)), started at 0,
-/// along the whole path; y += h (p - x)/w.
+/// The core of an axis remembers where it came from: the play operator p <- max(x - w, min(x + w, p)),
+/// started at 0, along the whole path; y += h (p - x)/w.
 class AxisHysteresis final : public EffectOf<AxisHysteresis> {
  public:
   AxisHysteresis(Where where, double h_nT, double width)

@@ -7,8 +7,8 @@
 
 namespace mgtd::rig {
 
-/// B += (G + G' t) x with t in hours; symmetric and traceless, each given as (xx, yy, xy, xz, yz) in nT/m and
-/// nT/m/h.
+/// SiteGradient adds a gradient to the field of the site: B += (G + G' t) x with t in hours; G and G' are
+/// symmetric and traceless, each given as (xx, yy, xy, xz, yz) in nT/m and nT/m/h.
 class SiteGradient final : public EffectOf<SiteGradient> {
  public:
   using Five = std::array<double, 5>;
