@@ -8,8 +8,9 @@
 #include "calib/calibration/tensor.h"
 #include "proto/pose.h"
 
-/// A calibration applied to a pose table, row by row: calibrated field of every sensor, field and tensor at
-/// the centre, closure. Instrument errors are removed; what the site does is real field and stays in.
+/// apply() corrects every pose of a pose table with a calibration: it gives the field at each sensor, the
+/// field and the tensor at the centre, and the closure. Instrument errors are removed; what the site does is
+/// real field and stays in.
 namespace mgtd::calib::calibration {
 
 struct ApplyOptions {

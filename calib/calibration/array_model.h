@@ -11,8 +11,9 @@
 #include "calib/sensor/geometry.h"
 #include "calib/sensor/sensor_model.h"
 
-/// The sensors and the effects of a model, from readings back to fields: the inverse of what the fit
-/// predicts. An effect whose inputs were not measured at a pose (Effect::missing) is not removed there.
+/// An ArrayModel turns readings back into fields, with the sensors and the effects of a model: it is the
+/// inverse of what the fit predicts. An effect whose inputs were not measured at a pose (Effect::missing) is
+/// not removed there.
 namespace mgtd::calib::calibration {
 
 class ArrayModel {

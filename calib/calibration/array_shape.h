@@ -2,7 +2,8 @@
 #pragma once
 #include <Eigen/Core>
 
-/// In how many directions the sensors of an array stand apart: at one place, on a line, in a plane, in space.
+/// An ArrayShape says in how many directions the sensors of an array stand apart: whether they are at one
+/// place, on a line, in a plane or in space.
 ///
 /// This alone decides what an array can tell of a gradient. With s_i = r_i - c, c the centroid and
 /// size = max |s_i|:

@@ -4,8 +4,9 @@
 
 #include "calib/calibration/calibration.h"
 
-/// CAL.json, schema "mgt.cal/1". Every key names its unit; angles are radians here, since degrees would
-/// cost the last bit. Covariance in the same units, upper triangle by rows. Reading gives the same bits back.
+/// These functions write a calibration as JSON (CAL.json, schema "mgt.cal/1") and read it back. Every key
+/// names its unit; angles are radians here, since degrees would cost the last bit. Covariance in the same
+/// units, upper triangle by rows. Reading gives the same bits back.
 namespace mgtd::calib::calibration {
 
 [[nodiscard]] nlohmann::json to_json(const Calibration& calibration);

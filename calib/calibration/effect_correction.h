@@ -9,9 +9,9 @@
 #include "calib/effects/laws/live_memory.h"
 #include "calib/poses/run_time.h"
 
-/// Readings to fields by a calibration that carries effects, with what the calibration leaves uncertain.
-/// Costs some ten microseconds a pose; without effects TensorPipeline has a cheaper way, and LiveTensor has
-/// one for a stream.
+/// An EffectCorrection turns readings into fields with a calibration that carries effects, and says what the
+/// calibration leaves uncertain in them. It costs some ten microseconds a pose; without effects
+/// TensorPipeline has a cheaper way, and LiveTensor has one for a stream.
 namespace mgtd::calib::calibration {
 
 struct Corrected {

@@ -4,7 +4,7 @@
 
 #include "calib/sensor/sensor_model.h"
 
-/// How a corrected field answers to errors of the parameters.
+/// field_derivative() says how a corrected field changes with errors of the parameters of its sensor.
 namespace mgtd::calib::calibration {
 
 /// Axes (columns, platform frame) about which the corrected field turns, as w x b, per unit alpha, beta,

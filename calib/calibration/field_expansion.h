@@ -11,8 +11,8 @@
 #include "calib/calibration/array_shape.h"
 #include "proto/error.h"
 
-/// Field, gradient and closure of an array of N three-axis sensors as linear functions of its 3N corrected
-/// components, for any places of the sensors.
+/// A FieldExpansion computes field, gradient and closure of an array of N three-axis sensors as linear
+/// functions of its 3N corrected components, wherever the sensors are placed.
 ///
 /// The model is the field's expansion to first order about the origin of the platform frame,
 ///     b_i = B + G r_i,   G symmetric and traceless (no current, no source between the sensors)

@@ -8,9 +8,9 @@
 #include "calib/calibration/effect_correction.h"
 #include "calib/calibration/tensor.h"
 
-/// The stream's arithmetic with the effects of the active calibration, sample after sample: readings in, what
-/// the instrument adds removed from live temperatures, time, table angles, currents and the path of the
-/// readings themselves, effects of the site left in.
+/// A LiveTensor turns each sample of a stream into field and tensor with the active calibration and its
+/// effects. What the instrument adds is computed from live temperatures, time, table angles, currents and the
+/// path of the readings themselves, and is removed; effects of the site stay in.
 ///
 /// An effect whose inputs are not measured now is left out, g_sd is wider by its size in the calibration's
 /// own run, and the sample is flagged `incomplete`; left_out() says which and what it lacks. The part of g_sd

@@ -6,7 +6,7 @@
 
 namespace mgtd::calib::calibration {
 
-/// Stands in the text `gauge` of a calibration that was fitted without a known field.
+/// The text `gauge` of a calibration contains these words when it was fitted without a known field.
 inline constexpr std::string_view kScaleIsFree = "the overall scale is free";
 
 /// Whether a calibration knows its scale factors but for one common factor.

@@ -14,7 +14,7 @@
 #include "proto/pose.h"
 #include "proto/tensor.h"
 
-/// Field, gradient tensor and closure of one set of readings.
+/// A TensorPipeline computes field, gradient tensor and closure from one set of readings.
 ///
 /// The 3N corrected components b_i (platform frame, sensor at r_i) are fitted by least squares to
 ///     b_i = B + G r_i,   G symmetric and traceless (5 numbers)

@@ -9,8 +9,8 @@
 #include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
 
-/// What could be measured on top of a run to tell two effects apart: some of its own attitudes again, under
-/// other conditions.
+/// An Action is what could be measured on top of a run to tell two effects apart: some of its own attitudes
+/// again, under other conditions.
 namespace mgtd::calib::design {
 
 inline constexpr std::size_t kActionPoses = 24;  ///< that an action adds

@@ -6,7 +6,7 @@
 
 #include "calib/design/law_actions.h"
 
-/// The poses that an action could consist of.
+/// candidate_poses() lists the poses that an action could consist of.
 ///
 /// They follow each other as those of the run did. The temperatures go on as they went, and so does a column
 /// that goes with the time (a battery); other columns take values that they had. On another day the course

@@ -9,7 +9,7 @@
 #include "calib/fit/joint/joint_setup.h"
 #include "calib/fit/joint/joint_solver.h"
 
-/// What a run that is not yet measured would show of physics that is not in its model, and which two causes
+/// design_power() says which effects that are not in its model a planned run would show, and which two causes
 /// it could not tell apart.
 ///
 /// Signatures z of the library's effects at the planned poses, calibration and pose nuisances projected out.

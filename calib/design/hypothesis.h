@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::design {
 
-/// One of several descriptions of the same residual: effects of the library or formulas, together.
+/// A Hypothesis is one of several descriptions of the same residual: effects of the library or formulas that
+/// act together.
 struct Hypothesis {
   std::string name{};                ///< for a person
   std::vector<std::string> specs{};  ///< as --with reads them

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-/// How far apart two descriptions of one residual stand on a set of poses, and which further poses set them
-/// apart.
+/// A HypothesisDistance says how far apart two descriptions of one residual stand on a set of poses, and
+/// which further poses set them apart.
 ///
 /// Rows are whitened, nuisances of their poses eliminated. Let F be the columns by the calibration's
 /// parameters and Z_i those of description i, with the coefficients g_i that it has on the run. If a is true,

@@ -7,8 +7,8 @@
 #include "calib/design/hypothesis_distance.h"
 #include "calib/design/model_on_poses.h"
 
-/// Hypotheses (hypothesis.h) as the residual of a run has them: their coefficients, which pairs of them are a
-/// question, and how far apart those stand on the poses of a table.
+/// hypothesis_fit() fits hypotheses (hypothesis.h) to the residual of a run and says which pairs of them are
+/// in question; distances_on() says how far apart those stand on the poses of a table.
 namespace mgtd::calib::design {
 
 /// Of a description, in standard deviations, below which the smallest size that is seen stands for it.

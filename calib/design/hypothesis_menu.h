@@ -10,8 +10,8 @@
 #include "calib/design/law_actions.h"
 #include "calib/design/next_measurement.h"
 
-/// Which further measurement would tell several formulas, or effects, apart: all that could stand in one
-/// place.
+/// hypothesis_menu() finds which further measurement would tell apart several formulas or effects that could
+/// each account for the same residual.
 ///
 /// Each has the coefficients that fit the residual of the run best (one linearisation of the joint fit, as in
 /// calib/discovery). Of two, the one that leaves less is taken as true, and

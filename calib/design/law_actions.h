@@ -10,8 +10,8 @@
 #include "calib/sensor/sensor_model.h"
 #include "proto/pose.h"
 
-/// What could be measured behind a run to tell formulas apart: conditions under which further poses stand. An
-/// action changes poses as candidate_poses.h makes them.
+/// A LawAction is what could be measured after a run to tell formulas apart: it sets the conditions under
+/// which further poses are measured. It changes poses as candidate_poses.h makes them.
 namespace mgtd::calib::design {
 
 inline constexpr std::size_t kLawPoses = 24;  ///< that an action adds

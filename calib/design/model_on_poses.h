@@ -7,8 +7,8 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "proto/error.h"
 
-/// The model of a fit on poses that it was not fitted to: what a further measurement would tell is computed
-/// from it, without readings of that measurement.
+/// model_on_poses() applies the model of a fit to poses that it was not fitted to. What a further measurement
+/// would tell is computed from it, without readings of that measurement.
 namespace mgtd::calib::design {
 
 struct ModelOnPoses {

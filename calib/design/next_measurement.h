@@ -6,7 +6,7 @@
 
 #include "calib/criticism/tests/candidate.h"
 
-/// The cheapest further measurement that would tell two effects apart.
+/// next_measurements() finds which further measurements would tell two effects apart.
 ///
 /// An action is a set of poses that could be added to the run: some of its own attitudes again, under other
 /// conditions. Their rows of the fit need no readings, so the distance

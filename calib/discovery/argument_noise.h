@@ -4,8 +4,8 @@
 
 #include "calib/discovery/fitted_law.h"
 
-/// A law of the table's angles is evaluated at angles that are only so good: what it adds to a reading then
-/// scatters from pose to pose as if the reading itself were noisier.
+/// The table's angles have errors, so what a law of these angles adds to a reading scatters from pose to pose
+/// as if the reading itself were noisier. variance_of_angles() computes the variance that this adds:
 ///
 ///     var_c(k) = sum over azimuth, pitch, roll of ((f_c(angle + sd) - f_c(angle - sd)) / 2)^2
 ///

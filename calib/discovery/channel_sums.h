@@ -7,7 +7,8 @@
 
 #include "calib/criticism/tests/residual.h"
 
-/// Everything that a search for laws needs of a fit, in as many dimensions as there are poses.
+/// ChannelSums holds everything that a search for laws needs of a fit, in as many dimensions as there are
+/// poses.
 ///
 /// A law adds g(k) to what channel c reads at pose k. With Z_c the projected columns of one unit at each pose
 /// (nuisances and the model's own parameters taken out, poses uncorrelated) its signature is Z_c g, and with

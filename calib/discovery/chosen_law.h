@@ -6,7 +6,8 @@
 #include "calib/discovery/discovery_report.h"
 #include "calib/discovery/law_round.h"
 
-/// The outcome of one round as it is reported, with the fitted formulas behind it.
+/// A ChosenLaw is the outcome of one round of the search as it is reported, with the fitted formulas behind
+/// it.
 namespace mgtd::calib::discovery {
 
 struct ChosenLaw {

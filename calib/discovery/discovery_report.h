@@ -11,7 +11,7 @@
 #include "calib/discovery/law_shape.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// What discover() finds, as values; see discover.h.
+/// A DiscoveryReport holds what discover() (discover.h) finds, as values.
 namespace mgtd::calib::discovery {
 
 enum class LawFinding { pass, law, law_set, library, shape_only, noise_like };

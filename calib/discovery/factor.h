@@ -5,7 +5,8 @@
 #include "calib/discovery/grammar.h"
 #include "calib/discovery/scalars.h"
 
-/// A factor is what stands in a product: an expression about its mean, and the same about its zero.
+/// A Factor is one of the two expressions that a formula multiplies; it is written once about its mean and
+/// once about the zero of its scale.
 namespace mgtd::calib::discovery {
 
 struct Factor {

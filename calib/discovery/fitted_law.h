@@ -7,9 +7,9 @@
 #include "calib/discovery/grammar.h"
 #include "calib/discovery/place.h"
 
-/// One formula at one place, with the coefficients that fit the residual best when calibration, attitudes and
-/// fields are free: value = A^+ v, covariance A^+, A the products of its projected columns and v their
-/// scores.
+/// A FittedLaw is one formula at one place, with the coefficients that fit the residual best when
+/// calibration, attitudes and fields are free: value = A^+ v, covariance A^+, A the products of its projected
+/// columns and v their scores.
 namespace mgtd::calib::discovery {
 
 struct FittedLaw {

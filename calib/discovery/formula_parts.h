@@ -6,8 +6,8 @@
 
 #include "calib/discovery/grammar.h"
 
-/// Pieces of formulas that several families of the grammar have in common, and the grids of the numbers in
-/// them.
+/// These functions give the pieces of formulas that several families of the grammar have in common, and the
+/// grids of the numbers in them.
 namespace mgtd::calib::discovery {
 
 /// Names of the sensor's own reading: along the axis that reads, and along its three axes.

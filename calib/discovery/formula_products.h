@@ -6,10 +6,10 @@
 #include "calib/discovery/channel_sums.h"
 #include "calib/discovery/formula_values.h"
 
-/// Inner products of the columns of each formula, computed once for all rounds of a search: on every two
-/// channels that a place has together, before projection, g_a' h_ab g_b, and less what the model's own
-/// parameters take up, g_a' G_ab g_b (channel_sums.h). They stay as they are when laws are taken out of the
-/// residual.
+/// FormulaProducts holds the inner products of the columns of each formula, computed once for all rounds of a
+/// search: on every two channels that a place has together, before projection, g_a' h_ab g_b, and less what
+/// the model's own parameters take up, g_a' G_ab g_b (channel_sums.h). They stay as they are when laws are
+/// taken out of the residual.
 namespace mgtd::calib::discovery {
 
 class FormulaProducts {

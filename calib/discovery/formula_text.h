@@ -5,7 +5,7 @@
 
 #include "calib/discovery/fitted_law.h"
 
-/// Formulas in words: for a person, and as effects of the user's own.
+/// These functions write formulas as text: for a person, and as effects of the user's own.
 namespace mgtd::calib::discovery {
 
 /// T for T_degC, x, y, z for the sensor's readings without offset over 50 000 nT (u where several axes read

@@ -8,7 +8,8 @@
 
 namespace mgtd::calib::discovery {
 
-/// The values of every formula on every channel: they stay the same from one residual to the next.
+/// FormulaValues holds the values of every formula on every channel, which stay the same from one residual to
+/// the next.
 class FormulaValues {
  public:
   /// Refuses a grammar that does not fit the inputs.

@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/discovery/grammar_writer.h"
 
-/// Formulas of a gain: what the sensor reads, times a function of a scalar, of time, of the temperature or of
-/// an angle.
+/// write_gain_families() adds to the grammar the formulas of a gain: what the sensor reads, times a function
+/// of a scalar, of time, of the temperature or of an angle.
 namespace mgtd::calib::discovery {
 
 void write_gain_families(GrammarWriter& out);

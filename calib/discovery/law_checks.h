@@ -5,8 +5,8 @@
 
 #include "calib/discovery/law_round.h"
 
-/// Checks of a law that were no part of choosing it. A half or a fold has its own parameters of the
-/// calibration, projected out of it alone.
+/// These functions check a law in ways that had no part in choosing it. A half or a fold has its own
+/// parameters of the calibration, projected out of it alone.
 namespace mgtd::calib::discovery {
 
 /// Size of the law in every second block of eight poses over that in the others; near one for a law. Empty

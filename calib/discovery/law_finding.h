@@ -5,7 +5,8 @@
 #include "calib/discovery/chosen_law.h"
 #include "calib/discovery/noise_in_force.h"
 
-/// finding_of() says what discover() found in a run, from its laws and from what is left after them.
+/// finding_of() decides the finding of discover() from the laws that were found in a run and from what is
+/// left after them.
 namespace mgtd::calib::discovery {
 
 /// A recording has one sample a pose, and samples that follow one another are no replicates: what drifts for

@@ -9,9 +9,9 @@
 #include "calib/effects/formula/tabulated_expression.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// What laws may be functions of, at the poses of a fit. An expression has the names of a formula of the axes
-/// (effects/formula/formula.h), and each channel reads its own: T_degC is the temperature of its sensor, u
-/// the field along its axis.
+/// LawInputs gives the quantities that laws may be functions of, at the poses of a fit. An expression has the
+/// names of a formula of the axes (effects/formula/formula.h), and each channel reads its own: T_degC is the
+/// temperature of its sensor, u the field along its axis.
 namespace mgtd::calib::discovery {
 
 class LawInputs {

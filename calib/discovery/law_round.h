@@ -7,8 +7,8 @@
 #include "calib/discovery/discovery_report.h"
 #include "calib/discovery/law_search.h"
 
-/// One round of the search: everything is scored against what is left, what leads is ranked beside its
-/// rivals.
+/// law_round() makes one round of the search: it scores every formula against what is left and ranks the one
+/// that leads beside its rivals.
 namespace mgtd::calib::discovery {
 
 /// Chance of a formula where nothing is there, of the whole search.

@@ -4,9 +4,9 @@
 
 #include "calib/discovery/chosen_law.h"
 
-/// The laws of a run, one after the other: each is taken out of the residual, and the search is repeated in
-/// what is left, until nothing stands out. Then each is looked for again beside the others, because two laws
-/// on one axis first show as a compromise.
+/// A LawSequence holds the laws of a run, found one after the other: each is taken out of the residual, and
+/// the search is repeated in what is left, until nothing stands out. Then each is looked for again beside the
+/// others, because two laws on one axis first show as a compromise.
 ///
 /// Random rivals are held against all laws together. T_m is the evidence of the first m laws, R_m that of an
 /// offset that walks or jumps in what they leave; the models are T_m (laws alone) and T_m + R_m (both).

@@ -7,9 +7,9 @@
 
 #include "calib/discovery/fitted_law.h"
 
-/// The shape of a law over one covariate, with its band: cubic B-splines on the octiles of the covariate,
-/// six harmonics of the azimuth, times the reading for a gain, under a prior of curvature whose scale is that
-/// of the largest evidence,
+/// A LawShape is the curve of a law over one covariate, with its band, found without a formula. It consists
+/// of cubic B-splines on the octiles of the covariate, or of six harmonics of the azimuth, times the reading
+/// for a gain, under a prior of curvature whose scale is that of the largest evidence,
 ///
 ///     beta = C Z'r,   C = (Z'Z + P)^-1,   P = tau_c D'D + tau_r 1,   D second differences.
 ///

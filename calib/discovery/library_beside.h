@@ -4,8 +4,8 @@
 
 #include "calib/discovery/law_round.h"
 
-/// Scores of the library's effects in what some laws leave: their directions are out of the columns and out
-/// of the residual, as they are for the formulas that the effects are ranked with.
+/// library_beside() scores the library's effects in what some laws leave: the directions of these laws are
+/// out of the columns and out of the residual, as they are for the formulas that the effects are ranked with.
 namespace mgtd::calib::discovery {
 
 /// Of bench.library, without its signatures.

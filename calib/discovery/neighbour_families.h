@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/discovery/grammar_writer.h"
 
-/// Formulas of what another sensor of the array reads; none where the array has one sensor.
+/// write_neighbour_families() adds to the grammar the formulas of what another sensor of the array reads;
+/// there are none where the array has one sensor.
 namespace mgtd::calib::discovery {
 
 void write_neighbour_families(GrammarWriter& out);

@@ -4,8 +4,9 @@
 
 #include "calib/criticism/tests/criticism.h"
 
-/// The residual that laws are looked for in, in units of the noise that the tests of the library found
-/// (criticism/tests/judgement.h). Offsets that wander are not taken out: a walk is a rival of every formula.
+/// NoiseInForce holds the residual in which laws are looked for, in units of the noise that the tests of the
+/// library found (criticism/tests/judgement.h). Offsets that wander are not taken out: a walk is a rival of
+/// every formula.
 namespace mgtd::calib::discovery {
 
 struct NoiseInForce {

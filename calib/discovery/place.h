@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-/// Where a law acts: on one axis; on the three axes of a sensor or all axes of the array, each with
-/// coefficients of its own; or as a gradient of the site's field with five of them.
+/// A Place says where a law acts: on one axis; on the three axes of a sensor or all axes of the array, each
+/// with coefficients of its own; or as a gradient of the site's field with five of them.
 namespace mgtd::calib::discovery {
 
 struct Place {

@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/discovery/grammar_writer.h"
 
-/// Formulas that are products of two scalars or of first harmonics, and the parity of the pose.
+/// write_product_families() adds to the grammar the formulas that are products of two scalars or of first
+/// harmonics, and the parity of the pose.
 namespace mgtd::calib::discovery {
 
 void write_product_families(GrammarWriter& out);

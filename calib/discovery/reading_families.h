@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/discovery/grammar_writer.h"
 
-/// Formulas of what the sensor itself reads: now, and at the pose before.
+/// write_reading_families() adds to the grammar the formulas of what the sensor itself reads, now and at the
+/// pose before.
 namespace mgtd::calib::discovery {
 
 void write_reading_families(GrammarWriter& out);

@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/discovery/grammar_writer.h"
 
-/// Formulas of one scalar: its curves, and what is special to time, temperature, the angles and gravity.
+/// write_scalar_families() adds to the grammar the formulas of one scalar: its curves, and what is special to
+/// time, temperature, the angles and gravity.
 namespace mgtd::calib::discovery {
 
 void write_scalar_families(GrammarWriter& out);

@@ -6,8 +6,8 @@
 
 #include "calib/discovery/law_inputs.h"
 
-/// The quantities beside the readings that a law may be a function of: time, temperatures, recorded columns,
-/// angles of the table, sense of rotation; those that vary in the run.
+/// Scalars lists the quantities beside the readings that a law may be a function of: time, temperatures,
+/// recorded columns, angles of the table, sense of rotation. Only those that vary in the run are in it.
 namespace mgtd::calib::discovery {
 
 struct Scalar {

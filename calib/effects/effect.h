@@ -12,8 +12,9 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// One physical effect: an exact term with named coefficients, acting at exactly one level of the measurement
-/// model (g = unit gravity in the platform frame, x = R' r_i in metres from the array's centre, site frame):
+/// An Effect is one physical effect: an exact term with named coefficients, acting at exactly one level of
+/// the measurement model (g = unit gravity in the platform frame, x = R' r_i in metres from the array's
+/// centre, site frame):
 ///
 ///     site       B(x) = B0 + sum term(x)                    nT, site frame
 ///     table      angles = recorded + sum term(angles)       azimuth, pitch, roll, two tilts of the axis; rad

@@ -5,7 +5,7 @@
 
 #include "calib/effects/effect.h"
 
-/// The terms of all effects of one level, summed, with their derivatives.
+/// LevelTerms sums the terms of all effects of one level, with their derivatives.
 namespace mgtd::calib::effects {
 
 inline constexpr int kMaxTermInputs = 6, kMaxTermOutputs = 5;

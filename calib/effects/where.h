@@ -6,7 +6,7 @@
 #include "proto/error.h"
 #include "proto/per_sensor.h"
 
-/// Which sensors and axes an effect is laid over, and how many coefficients that takes.
+/// A Where says which sensors and axes an effect is laid over, and how many coefficients that takes.
 namespace mgtd::calib::effects {
 
 struct Where {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Where the azimuth of the platform frame comes from in a two-step calibration, as a value.
+/// An AzimuthOrigin says where the azimuth of the platform frame comes from in a two-step calibration.
 namespace mgtd::calib::fit {
 
 enum class AzimuthGauge { declination_given, table_frame, mean_gamma_zero };

@@ -3,7 +3,7 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/readings.h"
 
-/// The part of a calibration that does not depend on the method of the fit.
+/// These functions fill in the part of a calibration that does not depend on the method of the fit.
 namespace mgtd::calib::fit {
 
 [[nodiscard]] calibration::Reference reference_of(const PoseTable& table, const Readings& readings);

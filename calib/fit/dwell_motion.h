@@ -4,9 +4,9 @@
 
 #include "proto/pose.h"
 
-/// How far the field moves while the table stands still. A storm moves the readings within a dwell as noise
-/// does, and the spread of the samples contains it; the mean of the dwell is compared with the mean of the
-/// reference and does not.
+/// dwell_motion() estimates how far the field moves while the table stands still. A storm moves the readings
+/// within a dwell as noise does, and the spread of the samples contains it; the mean of the dwell is compared
+/// with the mean of the reference and does not.
 ///
 /// No reference is known sample by sample. From one pose to the next (at most a minute) it moves at the rate
 /// dB/dt, which in a dwell of length T spreads a component by |dB/dt| T / sqrt(12). Faster motion is missed,

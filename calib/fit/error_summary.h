@@ -3,8 +3,8 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/readings.h"
 
-/// How far corrected readings are from what they should be: |b| from F at each sensor, and the tensor of a
-/// uniform field from zero.
+/// summarise() says how far corrected readings are from what they should be: |b| from F at each sensor, and
+/// the tensor of a uniform field from zero.
 namespace mgtd::calib::fit {
 
 /// Corrected fields, one column per pose; platform frame for the tensor to mean anything.

@@ -11,7 +11,7 @@
 #include "calib/sensor/geometry.h"
 #include "proto/units.h"
 
-/// Options of a fit: its method, what the operator knows beside the poses, and the effects of the model.
+/// FitOptions tells a fit its method, what the operator knows beside the poses, and the effects of the model.
 namespace mgtd::calib::fit {
 
 enum class Method { simplified, two_step, joint };

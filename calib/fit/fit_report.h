@@ -15,8 +15,8 @@
 #include "proto/pose.h"
 #include "proto/tensor.h"
 
-/// What a fit found, as values: the calibration, how the fit ended, how far its result can be trusted. The
-/// words for a person are made in calib/report, the checks in calib/fit/checks.
+/// A FitReport holds what a fit found, as values: the calibration, how the fit ended, how far its result can
+/// be trusted. The words for a person are made in calib/report, the checks in calib/fit/checks.
 namespace mgtd::calib::fit::joint {
 struct JointFindings;
 }  // namespace mgtd::calib::fit::joint

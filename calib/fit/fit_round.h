@@ -2,7 +2,8 @@
 #pragma once
 #include <functional>
 
-/// A fit weighs its readings anew in rounds; this tells how far it has come, to someone who waits for it.
+/// A FitRound tells someone who waits for a fit how far it has come; a fit weighs its readings anew in
+/// rounds.
 namespace mgtd::calib::fit {
 
 struct FitRound {

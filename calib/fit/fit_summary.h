@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// How a fit ended: by which criterion its iterations stopped, how many there were, and how far chi-square
-/// fell.
+/// A FitSummary says how a fit ended: by which criterion its iterations stopped, how many there were, and how
+/// far chi-square fell.
 namespace mgtd::calib::fit {
 
 enum class Termination {

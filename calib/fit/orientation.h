@@ -4,7 +4,7 @@
 
 #include "calib/sensor/sensor_model.h"
 
-/// From matrices to the parameters of a sensor.
+/// These functions find the parameters of a sensor from matrices.
 namespace mgtd::calib::fit {
 
 /// alpha, beta, gamma of A_gamma A_beta A_alpha (eqs. 13-14); beta within 90 degrees.

@@ -7,7 +7,7 @@
 #include "calib/calibration/calibration.h"
 #include "calib/fit/fit_report.h"
 
-/// The readings of a pose table in the form that the fits use: one column per pose.
+/// Readings holds the readings of a pose table in the form that the fits use: one column per pose.
 namespace mgtd::calib::fit {
 
 struct Readings {

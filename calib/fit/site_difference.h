@@ -2,9 +2,9 @@
 #pragma once
 #include "proto/pose.h"
 
-/// The site difference: what a scalar magnetometer at the array reads more than a vector reference beside the
-/// table, f_nT - |r|. A constant, since a storm moves both alike; its mean over the poses that have both
-/// fills f_nT in for the poses that have the vector alone:
+/// The site difference is what a scalar magnetometer at the array reads more than a vector reference beside
+/// the table, f_nT - |r|. It is a constant, since a storm moves both alike; its mean over the poses that have
+/// both fills f_nT in for the poses that have the vector alone:
 ///
 ///     F_k = |r_k| + D,   D = mean(f - |r|),   sd of one pose: the scatter of f - |r|, no less than ref_sd_nT
 ///

@@ -3,11 +3,11 @@
 #include <optional>
 #include <string_view>
 
-/// The kernels of OpenBLAS for a processor that it does not know. Version 0.3.21, that of Debian 12, tells
-/// processors by their model numbers and takes the kernels of Prescott (2004) for one newer than itself: they
-/// multiply large matrices at a sixth of the speed of those that it has for AVX-512. Later versions go by
-/// what the processor can do. Of a library that is linked statically, or holds kernels of one kind only,
-/// nothing is changed.
+/// take_fitting_kernels() makes OpenBLAS use the kernels that fit a processor which it does not know. Version
+/// 0.3.21, that of Debian 12, tells processors by their model numbers and takes the kernels of Prescott
+/// (2004) for one newer than itself: they multiply large matrices at a sixth of the speed of those that it
+/// has for AVX-512. Later versions go by what the processor can do. Of a library that is linked statically,
+/// or holds kernels of one kind only, nothing is changed.
 namespace mgtd::calib::linear {
 
 /// What a processor can do.

@@ -6,9 +6,9 @@
 
 namespace mgtd::calib::linear {
 
-/// The Cholesky decomposition of a symmetric positive definite matrix A, made after its diagonal is scaled to
-/// one: D A D = L L' with D = diag(A)^-1/2. The scaling takes the units out, so that nanotesla beside radians
-/// cost no digits. Only the lower triangle of A is read.
+/// Cholesky decomposes a symmetric positive definite matrix A after its diagonal is scaled to one:
+/// D A D = L L' with D = diag(A)^-1/2. The scaling takes the units out, so that nanotesla beside radians cost
+/// no digits. Only the lower triangle of A is read.
 class Cholesky {
  public:
   /// Refused where A is not positive definite: some combination of the unknowns is not determined.

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-/// Work in parts that do not need each other, on two processors.
+/// for_each_part() does work on two processors, in parts that do not need each other.
 ///
 /// A part writes only what belongs to it, and the caller puts together what the parts have made, in their
 /// order: the digits of a result do not depend on how many threads there are. The threads end with the call.

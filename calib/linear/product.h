@@ -2,11 +2,11 @@
 #pragma once
 #include <Eigen/Core>
 
-/// Products of large matrices, by OpenBLAS, which has kernels for each kind of processor and takes those of
-/// the one it runs on (blas_kernels.h); Eigen's are compiled for the oldest. Each is made by one thread;
-/// several may ask at once, and wait for each other where the library was built without threads. The last
-/// digits differ between kinds of processors, so no calibration is made of these products: they are for tests
-/// and draws.
+/// These functions multiply large matrices by OpenBLAS, which has kernels for each kind of processor and
+/// takes those of the one it runs on (blas_kernels.h); Eigen's are compiled for the oldest. Each product is
+/// made by one thread; several may ask at once, and wait for each other where the library was built without
+/// threads. The last digits differ between kinds of processors, so no calibration is made of these products:
+/// they are for tests and draws.
 namespace mgtd::calib::linear {
 
 /// A'A, n x n of A with n columns.

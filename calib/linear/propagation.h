@@ -2,8 +2,9 @@
 #pragma once
 #include <Eigen/Core>
 
-/// Propagation of errors to first order: what y = f(x) inherits from an x of covariance C, with the Jacobian
-/// J = df/dx. Templates, so that small matrices keep their fixed size in the loop over the samples.
+/// These functions propagate errors to first order: they say what y = f(x) inherits from an x of covariance
+/// C, with the Jacobian J = df/dx. They are templates, so that small matrices keep their fixed size in the
+/// loop over the samples.
 namespace mgtd::calib::linear {
 
 /// J C J': the covariance of y.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-/// Least squares and orthonormal bases of columns, by Householder QR.
+/// These functions solve least squares and find orthonormal bases of columns, by Householder QR.
 namespace mgtd::calib::linear {
 
 /// The b of least |y - X b|, columns pivoted. Of a column that depends on the others b is zero.

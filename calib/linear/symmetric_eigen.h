@@ -2,8 +2,8 @@
 #pragma once
 #include <Eigen/Core>
 
-/// Eigenvalues of a real symmetric matrix, ascending, and its eigenvectors, orthonormal, as columns in the
-/// same order: A = V diag(values) V'. Only the lower triangle of A is read.
+/// symmetric_eigen() gives the eigenvalues of a real symmetric matrix, ascending, and its eigenvectors,
+/// orthonormal, as columns in the same order: A = V diag(values) V'. Only the lower triangle of A is read.
 namespace mgtd::calib::linear {
 
 struct SymmetricEigen {

@@ -7,7 +7,8 @@
 
 #include "proto/error.h"
 
-/// Which columns of a foreign table become which columns of a pose table, and what they are multiplied by:
+/// An ImportMap says which columns of a foreign table become which columns of a pose table, and how they are
+/// scaled:
 ///
 ///     value = scale * cell + offset
 ///

@@ -4,8 +4,8 @@
 #include <array>
 #include <string_view>
 
-/// Columns of the user's that are kept with the poses and never fitted: where on Earth the array stood. They
-/// are no cause of a residual, so no test looks at them; a formula that names one may use it.
+/// These columns of the user's say where on Earth the array stood; they are kept with the poses and never
+/// fitted. They are no cause of a residual, so no test looks at them; a formula that names one may use it.
 namespace mgtd::calib::poses {
 
 inline constexpr std::array<std::string_view, 3> kNeverFitted{"lat_deg", "lon_deg", "h_ellipsoid_m"};

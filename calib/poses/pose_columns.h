@@ -9,8 +9,8 @@
 
 #include "proto/pose.h"
 
-/// The numeric columns of a pose table that have a meaning of their own, each with its way into a Pose and
-/// out of it.
+/// A PoseColumn is a numeric column of a pose table that has a meaning of its own, with the functions that
+/// write it to a Pose and read it from one.
 namespace mgtd::calib::poses {
 
 struct PoseColumn {

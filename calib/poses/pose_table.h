@@ -6,10 +6,10 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// The pose table as text (CSV, '.' decimal point, header row, empty cell = not measured). Columns are
-/// described in docs/pose-table.md. The readings s1_x_nT ... tell how many sensors there are, 1 to
-/// kMostSensors; they are required, and every other column is optional. A numeric column with a name of its
-/// own is a covariate.
+/// These functions read and write the pose table as text (CSV, '.' decimal point, header row, empty cell =
+/// not measured). Columns are described in docs/pose-table.md. The readings s1_x_nT ... tell how many sensors
+/// there are, 1 to kMostSensors; they are required, and every other column is optional. A numeric column with
+/// a name of its own is a covariate.
 namespace mgtd::calib::poses {
 
 /// Tolerates CRLF, a byte order mark, blank lines, '#' comments and spaces around cells. Refuses, with

@@ -4,8 +4,9 @@
 
 #include "proto/pose.h"
 
-/// Time since the start of the run that a calibration was fitted to. Where both the run and a pose tell
-/// absolute time (t_utc) that counts; else t_s, and the origins of different tables are taken as the same.
+/// RunTime gives the time of a pose since the start of the run that a calibration was fitted to. Where both
+/// the run and a pose tell absolute time (t_utc) that counts; else t_s, and the origins of different tables
+/// are taken as the same.
 namespace mgtd::calib::poses {
 
 struct RunTime {

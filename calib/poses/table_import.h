@@ -6,10 +6,10 @@
 #include "calib/poses/import_map.h"
 #include "proto/error.h"
 
-/// A foreign table (any delimiter, units, order and signs) as the text of a pose table (pose_table.h). Poses
-/// are numbered from 1. Every row that is taken stands in the line that it has in the file (one line later
-/// where the file has no header), so that what is refused later is named by its line; lines that are not
-/// taken are empty.
+/// import_table() turns a foreign table (any delimiter, units, order and signs) into the text of a pose table
+/// (pose_table.h). Poses are numbered from 1. Every row that is taken stands in the line that it has in the
+/// file (one line later where the file has no header), so that what is refused later is named by its line;
+/// lines that are not taken are empty.
 namespace mgtd::calib::poses {
 
 /// Cells may stand in double quotes. Refuses, with file:line:column and what to do: a column that is not

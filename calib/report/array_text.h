@@ -6,10 +6,10 @@
 
 namespace mgtd::calib::report {
 
-/// What an array can tell by the places of its sensors, for a person, clauses separated by "; ": where the
-/// field is meant, which components of the gradient are determined and why the others are not, which of them
-/// are measured twice or follow from the vanishing divergence alone, and how many closure numbers are left
-/// for what. Says nothing of how accurate it is.
+/// what_it_tells() says, for a person, what an array can measure by the places of its sensors, in clauses
+/// separated by "; ": where the field is meant, which components of the gradient are determined and why the
+/// others are not, which of them are measured twice or follow from the vanishing divergence alone, and how
+/// many closure numbers are left for what. Says nothing of how accurate it is.
 ///
 ///     field and all five independent components of the gradient; the sensors do not stand apart in z, so Gzz
 ///     is not measured and follows from the vanishing divergence; Gxy is measured twice and checks itself; 4

@@ -5,7 +5,7 @@
 
 #include "calib/validity/change.h"
 
-/// A change as an object and for a person.
+/// These functions write a change of the calibration as a JSON object and as text for a person.
 namespace mgtd::calib::report {
 
 /// {"chi2","dof","log10_p","log10_p_single","p","sensors":[...],"named":[...],"parameters":[...]}; angles in

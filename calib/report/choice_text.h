@@ -6,7 +6,7 @@
 
 namespace mgtd::calib::report {
 
-/// One or two clauses; empty when nothing is open.
+/// to_text() says what a Choice leaves open, in one or two clauses; it is empty when nothing is open.
 [[nodiscard]] std::string to_text(const criticism::search::Choice& choice);
 
 }  // namespace mgtd::calib::report

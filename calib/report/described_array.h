@@ -7,7 +7,7 @@
 
 namespace mgtd::calib::report {
 
-/// Places and capabilities of an array, as the stream and the status carry them.
+/// described() gives the places and the capabilities of an array, as the stream and the status carry them.
 [[nodiscard]] ArrayDescription described(const sensor::Geometry& array);
 
 /// "the cross of four sensors, 0.4 m from arm to arm", "an array of 8 sensors".

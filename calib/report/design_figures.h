@@ -5,8 +5,8 @@
 #include "calib/design/experiment_design.h"
 #include "calib/report/figures/figure.h"
 
-/// Figures of a run that is not yet measured: the directions of the field that its poses reach, and the
-/// smallest size of each effect that they would show.
+/// design_figures() draws what to expect of a run that is not yet measured: the directions of the field that
+/// its poses reach, and the smallest size of each effect that they would show.
 namespace mgtd::calib::report {
 
 /// The second is left out where the power of the design was not asked for.

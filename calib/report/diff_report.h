@@ -5,7 +5,7 @@
 
 #include "calib/validity/diff.h"
 
-/// The difference of two calibrations in sentences.
+/// These functions say in sentences how two calibrations differ.
 namespace mgtd::calib::report {
 
 /// What changed, or that nothing did.

@@ -6,8 +6,8 @@
 
 #include "calib/discovery/discovery_report.h"
 
-/// Why discover() says its word: the rule that decided, what was measured against which limit, and what can
-/// be done about it.
+/// These functions say why discover() came to its finding: which rule decided, what was measured against
+/// which limit, and what can be done about it.
 namespace mgtd::calib::report {
 
 /// The random offset that walks and stands against a law: "an offset that walks at s3.z".

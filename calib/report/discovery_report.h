@@ -6,9 +6,9 @@
 
 #include "calib/discovery/discovery_report.h"
 
-/// What discover() found, as an object (schema mgt.discover/1) and for a person. `run` as the person typed
-/// it, for the commands that the text proposes; `before`: those that come first, so that the kept model is
-/// the one that was searched; `kept`: names under which the run keeps the formulas already.
+/// These functions write what discover() found as JSON (mgt.discover/1) and as text for a person. `run` as
+/// the person typed it, for the commands that the text proposes; `before`: those that come first, so that the
+/// kept model is the one that was searched; `kept`: names under which the run keeps the formulas already.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const discovery::DiscoveryReport& report, const std::string& run,

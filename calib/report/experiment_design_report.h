@@ -5,7 +5,7 @@
 
 #include "calib/design/experiment_design.h"
 
-/// The report of an experiment design, as a JSON object (schema "mgt.plan/1") and as text.
+/// These functions write the report of an experiment design as JSON (mgt.plan/1) and as text.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const design::DesignReport& report);

@@ -5,8 +5,9 @@
 
 #include "calib/design/experiment_power.h"
 
-/// The part of a design's report that is about missing effects: keys "detectable_above", "inseparable",
-/// "pairs" and "untestable" of "mgt.plan/1", and their tables for a person.
+/// These functions write the part of a design's report that is about missing effects: keys
+/// "detectable_above", "inseparable", "pairs" and "untestable" of "mgt.plan/1", and their tables for a
+/// person.
 namespace mgtd::calib::report {
 
 void add_json(const design::DesignPower& power, nlohmann::json& report);

@@ -12,8 +12,8 @@
 #include "calib/fit/joint/effect_impact.h"
 #include "calib/report/figures/figure.h"
 
-/// Figures of what explain() found: candidates and their evidence, what each effect takes out, costs and
-/// brings, and what the run cannot see or tell apart.
+/// These functions draw figures of what explain() found: candidates and their evidence, what each effect
+/// takes out, costs and brings, and what the run cannot see or tell apart.
 namespace mgtd::calib::report {
 
 [[nodiscard]] figures::Figure candidates_of(const criticism::search::ExplainReport& report);

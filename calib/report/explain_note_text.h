@@ -7,7 +7,7 @@
 
 namespace mgtd::calib::report {
 
-/// A clause without capital letter and full stop.
+/// to_text() puts what explain() noticed into words, as a clause without capital letter and full stop.
 [[nodiscard]] std::string to_text(const criticism::search::ExplainNote& note);
 
 /// Of each note, none twice: a search that begins anew after it took effects back may notice the same again.

@@ -7,8 +7,9 @@
 
 namespace mgtd::calib::report {
 
-/// For the terminal: verdict, table of candidates, what could have been seen, what these poses cannot tell.
-/// Where `width` has no room for the whole table of candidates, a short one has name and place in one column.
+/// to_text() writes what explain() found for the terminal: verdict, table of candidates, what could have been
+/// seen, what these poses cannot tell. Where `width` has no room for the whole table of candidates, a short
+/// one has name and place in one column.
 [[nodiscard]] std::string to_text(const criticism::search::ExplainReport& report,
                                   std::size_t width = kAnyWidth);
 

@@ -6,8 +6,9 @@
 #include "calib/report/figures/figure.h"
 #include "calib/report/panel_figures.h"
 
-/// Figures as JSON: their words alone, for a page that draws the picture from the numbers itself, so that
-/// every sentence about statistics is written here, once; or whole, with the picture and its data.
+/// These functions write figures as JSON: their words alone, for a page that draws the picture from the
+/// numbers itself, so that every sentence about statistics is written here, once; or whole, with the picture
+/// and its data.
 namespace mgtd::calib::report {
 
 /// {"name","title","caption","good","stands_out"}; `good` says what a good one looks like, with the number

@@ -5,7 +5,7 @@
 
 #include "calib/fit/fit_report.h"
 
-/// What the operator must know about a fit, one sentence each.
+/// fit_reasons() says what the operator must know about a fit, one sentence each.
 namespace mgtd::calib::report {
 
 /// What the caller found beside the fit, each failed check with its limit and remedy, then what was

@@ -4,9 +4,9 @@
 
 #include "calib/fit/fit_report.h"
 
-/// The result of `mgt fit --json`, schema "mgt.fit/1". Plain numbers in the unit named by the key's suffix,
-/// angles in degrees, standard deviations beside the values. What does not exist (no held-out error, no
-/// halves) is null.
+/// Writes the result of a fit as JSON (mgt.fit/1), which `mgt fit --json` prints. Plain numbers in the unit
+/// named by the key's suffix, angles in degrees, standard deviations beside the values. What does not exist
+/// (no held-out error, no halves) is null.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const fit::FitReport& report);

@@ -7,9 +7,9 @@
 
 namespace mgtd::calib::report {
 
-/// The report for a person: result and gauge, errors before and after each step, the twelve parameters of
-/// every sensor with their standard deviations, the odd and even halves, every check with its remedy when it
-/// failed. Fixed-width text; `width` is the number of columns that a table may have.
+/// to_text() writes the report of a fit for a person: result and gauge, errors before and after each step,
+/// the twelve parameters of every sensor with their standard deviations, the odd and even halves, every check
+/// with its remedy when it failed. Fixed-width text; `width` is the number of columns that a table may have.
 [[nodiscard]] std::string to_text(const fit::FitReport& report, std::size_t width = kAnyWidth);
 
 /// The table of errors alone: a row per stage (before, simplified, step 1, after, held out, check poses).

@@ -5,7 +5,7 @@
 
 #include "calib/fit/fit_summary.h"
 
-/// How a fit ended, in words.
+/// These functions say in words how a fit ended.
 namespace mgtd::calib::report {
 
 /// The value of "termination" in `mgt fit --json`: "closed-form", "converged", "slow-progress",

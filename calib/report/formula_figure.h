@@ -3,8 +3,8 @@
 #include "calib/criticism/tests/collinearity.h"
 #include "calib/report/figures/figure.h"
 
-/// What a user's formula would make of each pose, against what the model leaves there, before the formula is
-/// in any model.
+/// formula_figure() draws what a user's formula would do at each pose against what the model leaves there,
+/// before the formula is in any model.
 namespace mgtd::calib::report {
 
 [[nodiscard]] figures::Figure formula_figure(const criticism::tests::FormulaExamination& x);

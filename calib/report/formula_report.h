@@ -5,7 +5,7 @@
 
 #include "calib/criticism/tests/collinearity.h"
 
-/// The examination of a user's formula, as an object and for a person.
+/// These functions write the examination of a user's formula as a JSON object and as text for a person.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::FormulaExamination& x);

@@ -7,7 +7,7 @@
 
 namespace mgtd::calib::report {
 
-/// "mgt.improve/1".
+/// Writes what improve() did as JSON (mgt.improve/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::search::ImproveReport& report);
 [[nodiscard]] std::string to_text(const criticism::search::ImproveReport& report);
 

@@ -5,7 +5,7 @@
 
 namespace mgtd::calib::report {
 
-/// A number as JSON. JSON has no infinity and no NaN: what is not finite is null.
+/// number_or_null() writes a number as JSON. JSON has no infinity and no NaN: what is not finite is null.
 [[nodiscard]] inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }

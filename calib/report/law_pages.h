@@ -8,8 +8,8 @@
 #include "calib/report/figures/figure.h"
 #include "proto/error.h"
 
-/// What a report says of each law that discover found on a run: read from the object that
-/// discovery_report.h makes, so that a report shows what was found then.
+/// A LawPage holds what a report says of one law that discover() found on a run. It is read from the object
+/// that discovery_report.h makes, so that a report shows what was found then.
 namespace mgtd::calib::report {
 
 struct LawPage {

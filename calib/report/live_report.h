@@ -6,7 +6,7 @@
 #include "calib/criticism/live/live_finding.h"
 #include "calib/criticism/tests/rearrangement.h"
 
-/// What the stream shows of its calibration, in words for an operator.
+/// A LiveReport says, in words for an operator, what the stream shows of its calibration.
 namespace mgtd::calib::report {
 
 struct LiveReport {

@@ -4,7 +4,8 @@
 
 #include "calib/criticism/tests/measured_points.h"
 
-/// What a run shows of itself where the fit is refused: the readings, the field and the circumstances.
+/// to_json() writes what a run shows by itself where the fit is refused: the readings, the field and the
+/// circumstances.
 namespace mgtd::calib::report {
 
 /// {"poses": arrays by column, one entry a pose, null: not measured,

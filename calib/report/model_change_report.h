@@ -5,7 +5,7 @@
 
 #include "calib/criticism/search/model_change.h"
 
-/// What a change of the model does, as an object and for a person.
+/// These functions write what a change of the model does as a JSON object and as text for a person.
 namespace mgtd::calib::report {
 
 /// Schema "mgt.model-change/1".

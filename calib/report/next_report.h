@@ -5,7 +5,7 @@
 
 #include "calib/criticism/search/next_pair.h"
 
-/// The next measurement as an object, schema "mgt.next/1", and for a person.
+/// These functions write the next measurement as JSON (mgt.next/1) and as text for a person.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const criticism::search::NextReport& report);

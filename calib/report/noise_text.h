@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::report {
 
-/// What the tests take for noise instead, and why; empty where they take what the dwells say.
+/// noise_of_tests() says what the tests take for noise when it is not what the dwells say, and why; else it
+/// is empty.
 [[nodiscard]] std::string noise_of_tests(const criticism::tests::NoiseModel& noise);
 
 }  // namespace mgtd::calib::report

@@ -6,9 +6,9 @@
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/report/figures/figure.h"
 
-/// The nine panels: what a model leaves, against time, azimuth, temperature and the direction of the field;
-/// its distribution and its memory; the parts of it that are blind to angles, to sensors and to gradients.
-/// And one panel for every extra column that it follows.
+/// panel_figures() draws nine panels of what a model leaves: against time, azimuth, temperature and the
+/// direction of the field; its distribution and its memory; the parts of it that are blind to angles, to
+/// sensors and to gradients. There is one more panel for every extra column that it follows.
 namespace mgtd::calib::report {
 
 /// Combinations of closure that a figure shows.

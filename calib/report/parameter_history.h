@@ -9,7 +9,8 @@
 #include "calib/report/figures/figure.h"
 #include "calib/validity/diff.h"
 
-/// How the parameters of one array moved from calibration to calibration: as JSON, as text and as a figure.
+/// These functions show how the parameters of one array moved from calibration to calibration: as JSON, as
+/// text and as a figure.
 namespace mgtd::calib::report {
 
 /// What changed from one calibration to the next of the same array.

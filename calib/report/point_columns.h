@@ -9,7 +9,7 @@
 
 #include "proto/pose.h"
 
-/// Values by pose, as arrays by column.
+/// These functions write values by pose as JSON, one array for each column.
 namespace mgtd::calib::report {
 
 /// A column: its group ("residual_nT"), its name in the group ("s1.x"; empty: the group is one column), and

@@ -7,7 +7,8 @@
 
 namespace mgtd::calib::report {
 
-/// The key "poses" of "mgt.compare/1": arrays by column, one entry a pose. null: not known, or left out.
+/// Writes the key "poses" of "mgt.compare/1": arrays by column, one entry a pose. null: not known, or left
+/// out.
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::PosePoints& points);
 /// The same as CSV, one row a pose, numbers that read back as they are. Empty cells: as null.
 [[nodiscard]] std::string to_csv(const criticism::tests::PosePoints& points);

@@ -6,7 +6,7 @@
 #include "calib/criticism/tests/exchange_in_run.h"
 #include "calib/criticism/tests/rearrangement.h"
 
-/// Sensors that changed places or turned, in words.
+/// These functions say in words which sensors changed places or turned.
 namespace mgtd::calib::report {
 
 /// "s2 and s4 are exchanged", "s3 is turned by 90 deg about Z".

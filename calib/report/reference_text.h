@@ -5,7 +5,7 @@
 #include "calib/fit/dwell_motion.h"
 #include "calib/fit/joint/reference_scatter.h"
 
-/// Words for what a reference says: how well it agrees with what it is compared with, and how the field
+/// These functions say in words how well a reference agrees with what it is compared with, and how the field
 /// moved.
 namespace mgtd::calib::report {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-/// Words that stand beside the same figures in every report.
+/// These words stand beside the same figures in every report.
 namespace mgtd::calib::report {
 
 /// What "residual" means: see PoseResiduals.

@@ -7,8 +7,8 @@
 #include "calib/report/figures/figure.h"
 #include "calib/report/panel_figures.h"
 
-/// Figures of the measurement itself: where the sensors were looked at from, what happened when, and how the
-/// tensor became known.
+/// These functions draw figures of the measurement itself: which directions of the field the sensors saw,
+/// what happened when, and how the tensor became known.
 namespace mgtd::calib::report {
 
 /// Directions of the field in the platform, and the largest hole between them.

@@ -7,7 +7,8 @@
 
 namespace mgtd::calib::report {
 
-/// A cell of a table of numbers, right-aligned; "-" for NaN, which stands for what the array cannot tell.
+/// shown_number() writes a cell of a table of numbers, right-aligned; it shows "-" for NaN, which stands for
+/// what the array cannot tell.
 [[nodiscard]] inline std::string shown_number(double value, int width, int decimals) {
   return std::isnan(value) ? fmt::format("{:>{}}", "-", width)
                            : fmt::format("{:>{}.{}f}", value, width, decimals);

@@ -8,7 +8,8 @@
 
 namespace mgtd::calib::report {
 
-/// Whether the calibration still holds and why, then what limits the answer; one sentence each.
+/// validity_reasons() says whether the calibration still holds and why, then what limits the answer; one
+/// sentence each.
 [[nodiscard]] std::vector<std::string> validity_reasons(const validity::ValidityReport& report);
 
 /// Schema "mgt.check/1".

@@ -7,7 +7,8 @@
 
 namespace mgtd::calib::report {
 
-/// The verdict as one paragraph for a person, made of the report's figures and nothing else.
+/// sentence() writes the verdict of explain() as one paragraph for a person, made of the report's figures and
+/// nothing else.
 [[nodiscard]] std::string sentence(const criticism::search::ExplainReport& report);
 
 /// "0.14 nT (s3.z)"; in words where no size would be seen.

@@ -6,8 +6,9 @@
 
 namespace mgtd::calib::report {
 
-/// "slow wandering of all offsets, up to 0.98 +- 0.06 nT per root hour (s2.x)", or "1/f noise of
-/// the offsets of s2, up to 21 +- 2 pT/sqrt(Hz) at 1 Hz (s2.y)"; empty where none wander.
+/// wandering_text() says which offsets wander, and how fast: "slow wandering of all offsets, up to
+/// 0.98 +- 0.06 nT per root hour (s2.x)", or "1/f noise of the offsets of s2, up to 21 +- 2 pT/sqrt(Hz) at 1
+/// Hz (s2.y)"; empty where none wander.
 [[nodiscard]] std::string wandering_text(const fit::joint::WanderingEstimate& wandering);
 
 }  // namespace mgtd::calib::report

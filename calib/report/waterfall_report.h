@@ -7,6 +7,8 @@
 
 namespace mgtd::calib::report {
 
+/// These functions write what each effect of a model takes out of the error (waterfall.h) as JSON and as
+/// text.
 [[nodiscard]] nlohmann::json to_json(const criticism::search::Waterfall& w);
 [[nodiscard]] std::string to_text(const criticism::search::Waterfall& w);
 

@@ -7,6 +7,7 @@
 
 namespace mgtd::calib::report {
 
+/// wrapped() breaks text for a person into lines of at most this many characters.
 inline constexpr std::size_t kTextWidth = 80;
 /// For tables whose columns all stand beside each other.
 inline constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();

@@ -6,8 +6,8 @@
 
 #include "proto/reading.h"
 
-/// The components of all sensors as one vector, sensor by sensor: three of each, twelve of the cross. Sizes
-/// are known at run time and bounded at compile time, so that nothing is allocated.
+/// These types hold the components of all sensors as one vector, sensor by sensor: three of each, twelve of
+/// the cross. Sizes are known at run time and bounded at compile time, so that nothing is allocated.
 namespace mgtd::calib::sensor {
 
 inline constexpr int kChannels = 3 * kSensors;  ///< of the cross

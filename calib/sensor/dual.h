@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-/// Forward-mode dual number: a value and its N partial derivatives, carried exactly through every operation.
+/// A Dual is a forward-mode dual number: a value and its N partial derivatives, carried exactly through every
+/// operation.
 ///
 ///     f(v + sum d_i e_i) = f(v) + f'(v) sum d_i e_i,   e_i e_j = 0
 ///

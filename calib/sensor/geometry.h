@@ -5,8 +5,8 @@
 
 #include "proto/per_sensor.h"
 
-/// Where the sensors sit: their places in the platform frame O-XYZ, metres. The field and its gradient are
-/// those at the origin O.
+/// A Geometry says where the sensors sit: it holds their places in the platform frame O-XYZ, metres. The
+/// field and its gradient are those at the origin O.
 namespace mgtd::calib::sensor {
 
 class Geometry {

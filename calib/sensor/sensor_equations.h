@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
-/// The equations of sensor_model.h and of the table, written once for values (double) and for derivatives
-/// (Dual<N>).
+/// These are the equations of sensor_model.h and of the table, written once for values (double) and for
+/// derivatives (Dual<N>).
 namespace mgtd::calib::sensor {
 
 template <class S>

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-/// One three-axis fluxgate on the cross: twelve parameters and a mounting.
+/// A SensorModel describes one three-axis fluxgate of the array by twelve parameters and a mounting.
 ///
 ///     y   = C A b_S + I        C = diag(cx, cy, cz), I = (ix, iy, iz), A upper triangular in        (eq. 5)
 ///                              theta, phi, psi

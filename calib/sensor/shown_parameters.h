@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::sensor {
 
-/// Key, unit and factor from the inside unit to the one shown, of each of the twelve parameters.
+/// A ShownParameter gives key, unit and factor from the internal unit to the one shown, for one of the twelve
+/// parameters.
 struct ShownParameter {
   const char* key;   ///< "theta_deg"
   const char* name;  ///< "theta"

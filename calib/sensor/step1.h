@@ -4,8 +4,8 @@
 
 #include "proto/error.h"
 
-/// Step 1: one sensor by itself, from readings in fields of known magnitude (scalar calibration, nine
-/// parameters).
+/// Step 1 calibrates one sensor by itself, from readings in fields of known magnitude (scalar calibration,
+/// nine parameters).
 namespace mgtd::calib::sensor {
 
 inline constexpr Eigen::Index kFewestScalarPoses = 9;  ///< as many as there are parameters

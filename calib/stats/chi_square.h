@@ -3,8 +3,9 @@
 
 namespace mgtd::calib::stats {
 
-/// Probability that a chi-square with `dof` degrees of freedom exceeds x: the regularised upper incomplete
-/// gamma function Q(dof/2, x/2), by series below the mean and continued fraction above it. 1 for x <= 0.
+/// chi_square_p() is the probability that a chi-square with `dof` degrees of freedom exceeds x: the
+/// regularised upper incomplete gamma function Q(dof/2, x/2), by series below the mean and continued fraction
+/// above it. 1 for x <= 0.
 [[nodiscard]] double chi_square_p(double x, double dof);
 /// Its decimal logarithm, without underflow: Boost.Math has no logarithm of Q, and its Q is 0 below 1e-308.
 [[nodiscard]] double chi_square_log10_p(double x, double dof);

@@ -3,9 +3,9 @@
 
 namespace mgtd::calib::stats {
 
-/// Decimal logarithm of the probability that a variance ratio with (k, nu) degrees of freedom exceeds f: the
-/// regularised incomplete beta function I_x(nu/2, k/2) at x = nu/(nu + k f), by its continued fraction. No
-/// underflow: Boost.Math has no logarithm of it. Infinite nu: the chi-square of k f.
+/// f_log10_p() is the decimal logarithm of the probability that a variance ratio with (k, nu) degrees of
+/// freedom exceeds f: the regularised incomplete beta function I_x(nu/2, k/2) at x = nu/(nu + k f), by its
+/// continued fraction. No underflow: Boost.Math has no logarithm of it. Infinite nu: the chi-square of k f.
 [[nodiscard]] double f_log10_p(double f, double k, double nu);
 
 }  // namespace mgtd::calib::stats

@@ -4,7 +4,8 @@
 
 namespace mgtd::calib::stats {
 
-/// The upper median: of n values the one with n/2 below it, counted down. 0 of none.
+/// median() gives the upper median: of n values the one that has n/2 of them, rounded down, below it. 0 of
+/// none.
 [[nodiscard]] double median(std::vector<double> values);
 
 }  // namespace mgtd::calib::stats

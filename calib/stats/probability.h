@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-/// Probabilities for a person to read, of their decimal logarithm. Below 1e-30 no test of real data means its
-/// figure: that is what is said. Results for programs carry the logarithm itself.
+/// These functions write a probability for a person to read, from its decimal logarithm. Below 1e-30 no test
+/// of real data means its figure: that is what is said. Results for programs carry the logarithm itself.
 namespace mgtd::calib::stats {
 
 /// Standard deviation of a normal distribution over its median absolute deviation.

@@ -3,7 +3,7 @@
 #include "calib/calibration/calibration.h"
 #include "proto/error.h"
 
-/// Whether a calibration that came from elsewhere can be used on readings.
+/// validate() checks whether a calibration that came from elsewhere can be used on readings.
 namespace mgtd::calib::validity {
 
 /// Refuses, with what was found and the limit: a method that does not exist; a scale outside 0.1 to 10 or a

@@ -7,7 +7,7 @@
 
 #include "calib/calibration/calibration.h"
 
-/// A difference of two sets of parameters, judged against its covariance.
+/// A Change is a difference of two sets of parameters, judged against its covariance.
 namespace mgtd::calib::validity {
 
 /// Probability below which a difference is called a change.

@@ -7,7 +7,7 @@
 
 #include "calib/sensor/channels.h"
 
-/// The findings of live criticism, as values; calib/report/live_report.h has the sentences.
+/// A LiveFinding holds what live criticism found, as values; calib/report/live_report.h puts it into words.
 namespace mgtd::calib::criticism::live {
 
 enum class LiveState { none, learning, ok, suspect, near_source, exchanged, turned };

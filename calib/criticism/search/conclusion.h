@@ -5,7 +5,7 @@
 #include "calib/criticism/search/explain_report.h"
 #include "calib/criticism/tests/criticism.h"
 
-/// Draws one of the verdicts of explain.h from what a search found.
+/// conclude() chooses the verdict of explain() (explain.h) from what the search found.
 namespace mgtd::calib::criticism::search {
 
 /// The residual that was asked about, and its noise.

@@ -11,8 +11,8 @@
 #include "calib/criticism/tests/criticism.h"
 #include "calib/poses/pose_table.h"
 
-/// The search for the effects that a model lacks, round by round: the best family is added, everything is
-/// fitted again, and what is left is judged anew.
+/// An EffectSearch holds the state of the search for the effects that a model lacks. In each round the best
+/// family is added, everything is fitted again, and what is left is judged anew.
 namespace mgtd::calib::criticism::search {
 
 struct EffectSearch {

@@ -10,8 +10,8 @@
 #include "calib/criticism/tests/pose_points.h"
 #include "calib/criticism/tests/residual_maps.h"
 
-/// The evidence for one effect that a model may lack: the poses that show it, what the fit leaves without and
-/// with it, what else could stand in its place, and what would tell them apart.
+/// Evidence holds what speaks for one effect that a model may lack: the poses that show it, what the fit
+/// leaves without and with it, what else could stand in its place, and what would tell them apart.
 namespace mgtd::calib::criticism::search {
 
 /// What a fit leaves.

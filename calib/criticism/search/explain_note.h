@@ -8,7 +8,8 @@
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/exchange_in_run.h"
 
-/// What explain() noticed beside its verdict, as values; report/explain_note_text.h has the sentences.
+/// An ExplainNote holds one thing that explain() noticed beside its verdict, as a value;
+/// report/explain_note_text.h puts it into words.
 namespace mgtd::calib::criticism::search {
 
 // Of the data:

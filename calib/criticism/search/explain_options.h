@@ -8,7 +8,8 @@
 
 namespace mgtd::calib::criticism::search {
 
-/// Options of explain(): the model, and candidates beside or instead of the library.
+/// ExplainOptions tells explain() which model to examine, and which candidates to test beside or instead of
+/// the library.
 struct ExplainOptions {
   fit::FitOptions fit;  ///< method joint; its effects are the model that is asked about
   int rounds{4};

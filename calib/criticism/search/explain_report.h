@@ -15,7 +15,7 @@
 #include "calib/design/next_measurement.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// The result of explain(), as values; see explain.h.
+/// An ExplainReport holds the result of explain() (explain.h), as values.
 namespace mgtd::calib::criticism::search {
 
 enum class Finding { pass, explained, ambiguous, partial, unknown, bad_data };

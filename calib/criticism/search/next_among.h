@@ -8,9 +8,9 @@
 
 namespace mgtd::calib::criticism::search {
 
-/// Which further measurement would tell several formulas, or effects, apart: see design/hypothesis_menu.h.
-/// `options`: the model, without any of them. Where the run tells all of them apart already there are no
-/// steps and NextReport::told_apart. Refuses what hypothesis_menu() refuses.
+/// next_among() finds which further measurement would tell several formulas or effects apart
+/// (design/hypothesis_menu.h). `options`: the model, without any of them. Where the run tells all of them
+/// apart already there are no steps and NextReport::told_apart. Refuses what hypothesis_menu() refuses.
 [[nodiscard]] Result<NextReport> next_among(const PoseTable& table, const fit::FitOptions& options,
                                             const std::vector<design::Hypothesis>& hypotheses);
 

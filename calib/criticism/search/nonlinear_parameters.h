@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/fit/joint/joint_fit.h"
 
-/// The fixed numbers of the effects in a fitted model (the width of a hysteresis, the time constant of a
-/// settling) as parameters of their own.
+/// refine_nonlinear_parameters() fits the fixed numbers of the effects in a model (the width of a hysteresis,
+/// the time constant of a settling) as parameters of their own.
 ///
 /// With z(w) the columns of an effect and c its coefficients, dz/dw c is one more column. Its coefficient,
 /// fitted to the residual beside everything else, is the step of w (Gauss-Newton); all numbers step together,

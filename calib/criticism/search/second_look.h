@@ -7,7 +7,7 @@
 #include "calib/criticism/tests/alternatives.h"
 #include "calib/criticism/tests/criticism.h"
 
-/// A winner and its alternatives, tested again once the winner is in the model.
+/// second_look() tests a winner and its alternatives again once the winner is in the model.
 ///
 /// While much is missing, everything is judged in units of the misfit, and laws look alike that the noise of
 /// the readings tells apart. The fit with the winner says where calibration, attitudes and field really are

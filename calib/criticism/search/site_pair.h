@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/criticism/search/effect_search.h"
 
-/// Two sources at the site, tried at once. Where two act together, a search that adds one effect at a time
-/// begins with an effect that is neither of them, and what it adds next mends that.
+/// site_pair_instead() tries two sources at the site at once. Where two act together, a search that adds one
+/// effect at a time begins with an effect that is neither of them, and what it adds next mends that.
 ///
 /// The pairs are two dipoles, a dipole beside site.gradient, and site.gradient beside site.curvature; the
 /// places of dipoles are searched (tests/dipole_search.h). A pair is preferred to the effects of the rounds

@@ -5,7 +5,7 @@
 
 #include "calib/criticism/search/model_stage.h"
 
-/// What each effect of a model takes out of the error, down to the noise.
+/// waterfall() computes how much each effect of a model takes out of the error, down to the noise.
 ///
 /// Errors of independent causes add in squares, so the share of one is sqrt(error without^2 - error with^2).
 /// Two orders: added first, to the twelve parameters of each sensor alone, and dropped last, from the whole

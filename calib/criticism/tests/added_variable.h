@@ -5,9 +5,9 @@
 #include "calib/criticism/tests/residual.h"
 #include "calib/criticism/tests/score.h"
 
-/// Added-variable pairs: what an effect that the model lacks makes of each pose, and what is left there. With
-/// r the residual, z what the effect in its fitted form makes of it (calibration, attitudes and fields free
-/// in both) and r_k, z_k the part of pose k,
+/// added_variable() compares, pose by pose, what an effect that the model lacks would do with what the fit
+/// leaves there. With r the residual, z what the effect in its fitted form makes of it (calibration,
+/// attitudes and fields free in both) and r_k, z_k the part of pose k,
 ///     x_k = |z_k|,   y_k = z_k' r_k / |z_k|
 /// lie about a line through the origin, in units of the noise: its slope is the size of the effect in units
 /// of the size that was fitted, one, with standard deviation 1/sqrt(S). One pose with leverage shows as one

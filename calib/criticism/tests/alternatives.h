@@ -6,7 +6,7 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Which other effects could have made the same residual.
+/// alternatives_of() finds which other effects could have made the same residual.
 ///
 /// The families are ranked by their p, in units of chi-square by
 ///     L = S - price,   price = S0 + 2 ln(p(S0) n),   S0 the winner's fall, n the questions that were asked.

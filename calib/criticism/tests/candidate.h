@@ -8,8 +8,8 @@
 #include "calib/criticism/tests/criticism.h"
 #include "calib/fit/joint/effect_impact.h"
 
-/// An effect that the model may lack, as reports show it: its size, its share of the excess, what else could
-/// stand in its place and the poses that carry its evidence.
+/// A Candidate is an effect that the model may lack, as reports show it: with its size, its share of the
+/// excess, what else could stand in its place and the poses that carry its evidence.
 namespace mgtd::calib::criticism::tests {
 
 struct Candidate {

@@ -6,8 +6,9 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Which effects look alike on one run, pair by pair. Of effect a the question that fits these poses best is
-/// taken at its fitted form, with the calibration, attitudes and fields free; of effect b all questions:
+/// A ConfusionMatrix says, pair by pair, which effects look alike on one run. Of effect a the question that
+/// fits these poses best is taken at its fitted form, with the calibration, attitudes and fields free; of
+/// effect b all questions:
 ///
 ///     correlation   length of a's signature inside the nearest of b's spaces, 0 to 1
 ///     p_right       that the right one of the two is named, if a is there in the smallest size that is seen

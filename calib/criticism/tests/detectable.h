@@ -4,9 +4,9 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// The smallest size of an effect that a run would show. A coefficient with standard error s, everything else
-/// of the model free, is found at d = value / s = 8 in 99 of 100 runs and named right in nine cases of ten,
-/// with one chance in a hundred of a false alarm over the whole library.
+/// A Detectable says how large an effect must be for a run to show it. A coefficient with standard error s,
+/// everything else of the model free, is found at d = value / s = 8 in 99 of 100 runs and named right in nine
+/// cases of ten, with one chance in a hundred of a false alarm over the whole library.
 namespace mgtd::calib::criticism::tests {
 
 inline constexpr double kSeen = 8;

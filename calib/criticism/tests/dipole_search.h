@@ -6,8 +6,8 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// The places of one or two dipoles in which chi-square falls most, to first order in everything but the
-/// places.
+/// find_dipole() and find_dipoles() search for the places of one or two dipoles at which chi-square falls
+/// most, to first order in everything but the places.
 ///
 /// With Z(p) the projected columns of the moments at places p, S(p) = |P_Z(p) r|^2. Each place is tried at a
 /// grid of directions and distances, two dipoles at every pair of them, since several places make the same

@@ -6,8 +6,8 @@
 #include "calib/criticism/tests/rearrangement.h"
 #include "proto/pose.h"
 
-/// Sensors whose plugs changed places: within a run, from a pose on, or between an earlier calibration and a
-/// new one.
+/// exchange_in_run() and exchanged_since() find sensors whose plugs changed places: within a run, from a pose
+/// on, or between an earlier calibration and a new one.
 ///
 /// Within a run, by the total field that each sensor saw, which needs no angles and no mounting:
 ///

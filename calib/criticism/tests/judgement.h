@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/criticism/tests/criticism.h"
 
-/// A fit judged under the noise that its residual asks for.
+/// judge() tests a fit under the noise that its residual calls for.
 ///
 /// Where nothing stands out against the assumed noise, nothing more is tested. Where something does, the
 /// offsets may wander (wandering_estimate.h). Each law that stood out is then tested against the walk

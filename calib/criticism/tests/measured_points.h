@@ -9,7 +9,8 @@
 #include "calib/fit/fit_options.h"
 #include "proto/pose.h"
 
-/// What was measured at each pose, column by column, without any fit: it exists where a fit is refused too.
+/// MeasuredPoints holds what was measured at each pose, column by column. It needs no fit, so it exists where
+/// a fit is refused too.
 namespace mgtd::calib::criticism::tests {
 
 /// Columns of matrices are poses in the order of the table, without those of the set "check", as a fit has

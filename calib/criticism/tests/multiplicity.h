@@ -7,9 +7,10 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// How small a smallest p-value becomes when nothing is there: many questions are asked, and they are not
-/// independent. Under the model the sums z'r of all effects are jointly normal with covariance z'z, so draws
-/// of them give the smallest p of every family, and the smallest of all families, without any refit.
+/// calibrate() corrects the smallest p-value of a family for the number of questions that were asked. When
+/// nothing is there, the smallest of many p-values is small by chance, and the questions are not independent.
+/// Under the model the sums z'r of all effects are jointly normal with covariance z'z, so draws of them give
+/// the smallest p of every family, and the smallest of all families, without any refit.
 ///
 /// If m independent questions were asked, -ln(1 - p_min) would be exponential with rate m. That rate is
 /// estimated from the draws' lower third (maximum likelihood with the rest censored), which fixes the 1 %

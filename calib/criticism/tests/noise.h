@@ -6,7 +6,7 @@
 #include "calib/criticism/tests/score.h"
 #include "calib/fit/joint/wandering_estimate.h"
 
-/// What the noise is before anything is said about the model.
+/// A NoiseModel says what the noise is, before anything is said about the model.
 ///
 /// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N'. They
 /// give

@@ -7,8 +7,8 @@
 
 #include "calib/fit/joint/pose_influence.h"
 
-/// What a fit leaves at each pose, column by column, for plots and for a look at single poses. Columns of
-/// matrices are poses in the order of the fit. NaN: not known, or left out by the fit.
+/// PosePoints holds what a fit leaves at each pose, column by column, for plots and for a look at single
+/// poses. Columns of matrices are poses in the order of the fit. NaN: not known, or left out by the fit.
 namespace mgtd::calib::criticism::tests {
 
 struct PosePoints {

@@ -6,8 +6,9 @@
 
 namespace mgtd::calib::criticism::tests {
 
-/// Whose readings can come in each place when connectors were mixed up: every permutation but the identity of
-/// up to four sensors (23 of four), the exchange of two sensors in larger arrays. None with one sensor.
+/// possible_exchanges() lists how the connectors of an array can be mixed up, as the sensor whose readings
+/// come in each place: every permutation but the identity of up to four sensors (23 of four), the exchange of
+/// two sensors in larger arrays. With one sensor the list is empty.
 [[nodiscard]] std::vector<PerSensor<std::size_t>> possible_exchanges(std::size_t sensors);
 
 }  // namespace mgtd::calib::criticism::tests

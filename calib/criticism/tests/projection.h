@@ -4,8 +4,8 @@
 
 #include "calib/criticism/tests/whitener.h"
 
-/// What a joint fit adjusts, taken out of linearised rows: the nuisances of each pose and the correlation
-/// between poses (whitener.h), then every direction that the model's own parameters can take,
+/// A Projection takes out of linearised rows all that a joint fit adjusts: the nuisances of each pose and the
+/// correlation between poses (whitener.h), then every direction that the model's own parameters can take,
 ///     z = (I - B B') W x,   B orthonormal.
 namespace mgtd::calib::criticism::tests {
 

@@ -6,9 +6,9 @@
 #include "calib/criticism/tests/projection.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// What a joint fit left over, ready for tests: nuisances, correlation between poses and every direction that
-/// the model's own parameters can take are out. Under the model the residual is unit normal in the space that
-/// is left, `dof` dimensions of it.
+/// A Residual is what a joint fit left over, ready for tests: nuisances, correlation between poses and every
+/// direction that the model's own parameters can take have been removed. Under the model the residual is unit
+/// normal in the space that is left, `dof` dimensions of it.
 namespace mgtd::calib::criticism::tests {
 
 /// Singular values below this share of a column's length before projection are rounding: absorbed.

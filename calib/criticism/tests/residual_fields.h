@@ -6,8 +6,9 @@
 
 #include "calib/fit/joint/joint_fit.h"
 
-/// Residuals of one fit, brought back to the field at each sensor in the platform frame: columns are poses,
-/// rows channels, sensors or angles. A reading that the fit left out counts as one without residual.
+/// ResidualFields holds the residuals of one fit, brought back to the field at each sensor in the platform
+/// frame. Columns are poses; rows are channels, sensors or angles. A reading that the fit left out counts as
+/// one without residual.
 namespace mgtd::calib::criticism::tests {
 
 struct ResidualFields {

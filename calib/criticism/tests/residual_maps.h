@@ -7,9 +7,9 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Generic shapes of the residual over everything that was recorded, for effects that are in no library. A
-/// map is a set of smooth functions of one covariate, free in every channel (or in the site's field); its
-/// score test says whether the residual depends on that covariate.
+/// Residual maps test whether the residual depends on anything that was recorded, for effects that are in no
+/// library. A map is a set of smooth functions of one covariate, free in every channel (or in the site's
+/// field); its score test says whether the residual depends on that covariate.
 ///
 ///     time            8 cosines a channel          direction        monomials of degree 2 to 4 of the field
 ///     azimuth         4 harmonics a channel                         direction at the sensor, a channel

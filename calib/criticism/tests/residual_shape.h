@@ -4,7 +4,8 @@
 
 #include "calib/fit/joint/joint_fit.h"
 
-/// The shape of what a fit leaves: is it normal, and does a pose remember the ones before it?
+/// These functions say whether the residuals of a fit are normally distributed, and whether those of one pose
+/// depend on those of the poses before it.
 ///
 /// A residual is taken in units of its own standard deviation: what the pose's own attitude and field took of
 /// its freedom is allowed for (PoseResiduals). Readings that the fit left out are not among them.

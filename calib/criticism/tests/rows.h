@@ -6,8 +6,8 @@
 
 #include "calib/fit/joint/joint_problem.h"
 
-/// The linearised joint fit as rows, a block of JointProblem::pose_rows() for each pose, each row divided by
-/// its standard deviation (of the cross, with twelve readings):
+/// linear_rows() writes the linearised joint fit as rows, a block of JointProblem::pose_rows() for each pose,
+/// each row divided by its standard deviation (of the cross, with twelve readings):
 ///     0..11   readings
 ///     12      scalar reference
 ///     13..15  attitude; without table angles 13 is the idle slot, and the last

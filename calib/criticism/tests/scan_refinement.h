@@ -2,9 +2,9 @@
 #pragma once
 #include "calib/criticism/tests/score.h"
 
-/// A searched number between the values that were tried. An alarm is raised from those alone, because its
-/// chance is counted with them; a name is given with the number refined, because a law that is tried beside
-/// its true number falls behind others that have none.
+/// refine() looks for the best value of a searched number between the values that were tried. An alarm is
+/// raised from the tried values alone, because its chance is counted with them; a name is given with the
+/// number refined, because a law that is tried beside its true number falls behind others that have none.
 namespace mgtd::calib::criticism::tests {
 
 /// Halves the distance to the neighbours of the winner a few times and adds what was tried to the family.

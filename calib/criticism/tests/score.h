@@ -11,8 +11,8 @@
 #include "calib/criticism/tests/residual.h"
 #include "calib/criticism/tests/signature.h"
 
-/// The score (Lagrange multiplier) test of effects that are not in the model. With z the projected columns of
-/// an effect and r the residual,
+/// The score (Lagrange multiplier) test says whether an effect that is not in the model would improve it.
+/// With z the projected columns of an effect and r the residual,
 ///     S = |U' r|^2, U an orthonormal basis of span(z), rank k
 /// is the fall of chi-square that adding the effect would bring, chi-square distributed with k degrees of
 /// freedom when it is absent. No refit. One-step coefficients are (z'z)^-1 z'r with covariance (z'z)^-1, the

@@ -7,9 +7,9 @@
 #include "calib/criticism/tests/residual.h"
 #include "calib/criticism/tests/rows.h"
 
-/// What a law makes of a run: its projected columns z (projection.h), one for each coefficient, in units of
-/// the noise. A run of 5832 poses has half a megabyte in each column and the library a thousand of them, so
-/// what is held are sums over the rows.
+/// A Signature is what a law does to the readings of a run: its projected columns z (projection.h), one for
+/// each coefficient, in units of the noise. A run of 5832 poses has half a megabyte in each column and the
+/// library a thousand of them, so what is held are sums over the rows.
 ///     z'z = W'W - C'C,   z'r = W'r,   W the whitened rows, C = B'W
 /// loses what is below 1e-15 of |W|^2; what is below absorbed^2 = 1e-12 of it says nothing (residual.h).
 /// Of a short run the whitened rows are held, else they are made again whenever the columns are asked for.

@@ -7,7 +7,8 @@
 
 #include "calib/criticism/tests/rows.h"
 
-/// Maps of the site: field and gradient that change smoothly with time, and the field's map to second degree.
+/// site_map_rows() gives the residual maps of the site: field and gradient that change smoothly with time,
+/// and a constant field that varies with place up to second degree.
 namespace mgtd::calib::criticism::tests {
 
 inline constexpr int kCosines = 8;

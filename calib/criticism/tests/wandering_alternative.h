@@ -6,9 +6,10 @@
 #include "calib/criticism/tests/signature.h"
 #include "calib/fit/joint/wandering_estimate.h"
 
-/// Laws against offsets that wander. A drift, a step or a temperature makes an offset move, and so does the
-/// slow noise of a fluxgate. Which of them it is, two fits to the same residual decide, one with the law and
-/// one without it, in both of which every offset wanders as fast as fits best:
+/// A WanderingAlternative tells whether a law or offsets that wander describe the residual better. A drift, a
+/// step or a temperature makes an offset move, and so does the slow noise of a fluxgate. Which of them it is,
+/// two fits to the same residual decide, one with the law and one without it, in both of which every offset
+/// wanders as fast as fits best:
 ///
 ///     R = 2 ln (max L with the law / max L without it)
 ///

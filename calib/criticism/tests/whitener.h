@@ -6,7 +6,8 @@
 #include "calib/criticism/tests/rows.h"
 #include "calib/fit/joint/wandering.h"
 
-/// Takes the four nuisances of every pose out of a linearised joint fit, and the correlation between poses.
+/// A Whitener takes the four nuisances of every pose, and the correlation between poses, out of a linearised
+/// joint fit.
 ///
 /// Model of the readings' noise: of each channel first-order autoregressive over the poses in the order of
 /// time, n_k = rho n_(k-1) + sqrt(1 - rho^2) e_k; scalar and attitude are independent. Rows of pose k less

@@ -4,8 +4,9 @@
 
 #include "proto/error.h"
 
-/// Degrees where radians are expected. The columns that end in `_deg` are in degrees; sin, cos and tan of an
-/// expression take radians. sin(azimuth_deg) is nearly always a slip, and fits as noise.
+/// check_angles() finds degrees where an expression expects radians. The columns that end in `_deg` are in
+/// degrees; sin, cos and tan of an expression take radians. sin(azimuth_deg) is nearly always a slip, and
+/// fits as noise.
 namespace mgtd::calib::effects::formula {
 
 /// Refuses a sin, cos or tan whose argument has such a column and no conversion (pi, 0.01745 or 57.29), and

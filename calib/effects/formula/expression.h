@@ -7,9 +7,9 @@
 
 #include "proto/error.h"
 
-/// An arithmetic expression of named numbers (muParser): + - * / ^, comparisons, && || and ?:, sin cos tan
-/// of radians, sind cosd tand of degrees, asin acos atan sinh cosh tanh exp ln log2 log10 sqrt abs sign rint
-/// min max, pi. One value; no assignment, no text, no access to anything.
+/// An Expression computes a number from named numbers (muParser). It may contain + - * / ^, comparisons,
+/// && || and ?:, sin cos tan of radians, sind cosd tand of degrees, asin acos atan sinh cosh tanh exp ln log2
+/// log10 sqrt abs sign rint min max, pi. It has one value; no assignment, no text, no access to anything.
 namespace mgtd::calib::effects::formula {
 
 class Expression {

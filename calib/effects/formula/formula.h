@@ -9,7 +9,7 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/formula/expression.h"
 
-/// An effect by a user's own formula, complete in its spec:
+/// A user can define an effect by a formula, which is written out in the spec of the effect:
 ///
 ///     lamp@s3.z,level=platform,unit=nT/A,expr=lamp_A
 ///     creep@each-axis,level=axis,tau=2..120,expr=k*(u - 20000)*exp(-since_stop_s/tau)

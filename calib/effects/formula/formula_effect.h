@@ -12,9 +12,9 @@
 #include "calib/effects/formula/history_name.h"
 #include "calib/effects/laws/axis_scale.h"
 
-/// A user's formula as a term of the model: see formula.h. The derivative by a coefficient is exact (the term
-/// with that coefficient one and the others zero); those by the field and the place are central differences
-/// at two steps, extrapolated to none.
+/// A FormulaEffect is a user's formula (formula.h) as a term of the model. The derivative by a coefficient is
+/// exact (the term with that coefficient one and the others zero); those by the field and the place are
+/// central differences at two steps, extrapolated to none.
 namespace mgtd::calib::effects::formula {
 
 inline constexpr std::size_t kFormulaNames = 24;

@@ -8,7 +8,7 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/effect_spec.h"
 
-/// What the names in a formula stand for: formula.h lists them.
+/// A FormulaName says what a name in a formula stands for; formula.h lists these names.
 namespace mgtd::calib::effects::formula {
 
 struct FormulaName {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-/// Names in a formula that look back over the run:
+/// A HistoryName is a name in a formula that looks back over the run:
 ///
 ///     prev_X       X at the pose before                              its unit
 ///     lag600_X     X behind a low-pass of 600 s, dz/dt = (X - z)/tau its unit

@@ -7,7 +7,8 @@ class Parser;
 
 namespace mgtd::calib::effects::formula {
 
-/// What every expression knows beside the functions of muParser: pi, and sind, cosd, tand of degrees.
+/// define_functions() gives a parser what every expression knows beside the functions of muParser: pi, and
+/// sind, cosd, tand of degrees.
 void define_functions(mu::Parser& parser);
 
 }  // namespace mgtd::calib::effects::formula

@@ -7,9 +7,9 @@
 #include "calib/effects/formula/formula_names.h"
 #include "calib/poses/run_time.h"
 
-/// The values that the names of a formula of the axes have at every pose of a run (formula.h), in the order
-/// of the table; NaN where a pose has none. What a formula calls u, ux, uy, uz, the field terms of the axes,
-/// is here reading less offset: the same to the noise of a reading.
+/// RunValues gives the values that the names of a formula of the axes have at every pose of a run
+/// (formula.h), in the order of the table; NaN where a pose has none. What a formula calls u, ux, uy, uz, the
+/// field terms of the axes, is here reading less offset: the same to the noise of a reading.
 namespace mgtd::calib::effects::formula {
 
 class RunValues {

@@ -8,7 +8,7 @@
 #include "calib/effects/laws/axis_scale.h"
 #include "calib/poses/run_time.h"
 
-/// An effect of the electronics or the core of an axis, linear in its coefficients:
+/// An AxisEffect is an effect of the electronics or the core of an axis, linear in its coefficients:
 ///
 ///     y_a += sum_j c_j shape_j(v)        v = readings of the sensor's three axes at nominal scale, nT
 ///

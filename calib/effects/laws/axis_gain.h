@@ -5,7 +5,7 @@
 
 #include "calib/effects/laws/axis_effect.h"
 
-/// Effects on the scale factor of an axis:
+/// These effects change the scale factor of an axis:
 ///
 ///     axis.gain.temperature    y += 1e-6 kappa (T - T0) v       ppm/degC
 ///     axis.gain.temperature2   y += 1e-6 kappa2 (T - T0)^2 v    ppm/degC^2

@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/effects/laws/axis_effect.h"
 
-/// Readings that are no straight line of the field; x = v/F0, coefficients in nT at F0:
+/// These effects make the reading of an axis depend on the field in a way that is not linear; x = v/F0,
+/// coefficients in nT at F0:
 ///
 ///     axis.quadratic      y += q x^2
 ///     axis.cubic          y += c x^3

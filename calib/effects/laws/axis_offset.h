@@ -5,7 +5,7 @@
 #include "calib/effects/laws/axis_effect.h"
 #include "calib/poses/run_time.h"
 
-/// Effects that add the same to a reading whatever the field:
+/// These effects change the offset of an axis, by an amount that does not depend on the field:
 ///
 ///     axis.offset.temperature    y += alpha (T - T0)         nT/degC
 ///     axis.offset.temperature2   y += alpha2 (T - T0)^2      nT/degC^2

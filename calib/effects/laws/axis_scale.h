@@ -8,7 +8,7 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/where.h"
 
-/// The coefficients of an effect of the axes, laid over one axis, one sensor, or all.
+/// An AxisScale lays the coefficients of an effect of the axes over one axis, one sensor, or all.
 namespace mgtd::calib::effects::laws {
 
 /// What one axis has of a law.

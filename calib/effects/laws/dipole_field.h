@@ -7,8 +7,8 @@
 
 #include "proto/error.h"
 
-/// The field of a point dipole, D(d) = 100 nT m^3/(A m^2) (3 (m u) u - m)/|d|^3, u = d/|d|, d from the dipole
-/// to the point (m), m its moment (A m^2). The factor is mu0/4 pi.
+/// dipole_field_nT() computes the field of a point dipole, D(d) = 100 nT m^3/(A m^2) (3 (m u) u - m)/|d|^3,
+/// u = d/|d|, d from the dipole to the point (m), m its moment (A m^2). The factor is mu0/4 pi.
 namespace mgtd::calib::effects {
 struct EffectSpec;
 }  // namespace mgtd::calib::effects

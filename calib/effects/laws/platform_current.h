@@ -6,7 +6,7 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/laws/platform_effect.h"
 
-/// `platform.current`: the field of currents that flow near the array and turn with it.
+/// `platform.current` is the field of currents that flow near the array and turn with it.
 ///
 ///     b_i += sum_c s_ic (I_c - mean of I_c in the run)       nT/A, a vector for each sensor and current
 ///

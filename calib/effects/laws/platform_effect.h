@@ -4,7 +4,8 @@
 
 #include "calib/effects/laws/platform_scale.h"
 
-/// What effects of the platform have in common: a vector or a matrix of coefficients of each sensor.
+/// PlatformEffect is the base of the effects of the platform, which have a vector or a matrix of coefficients
+/// for each sensor.
 namespace mgtd::calib::effects::laws {
 
 template <class Self>

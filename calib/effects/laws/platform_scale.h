@@ -8,8 +8,8 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/where.h"
 
-/// The coefficients of an effect that is a vector or a matrix of each sensor: the same list for every sensor,
-/// "s3.x", for one sensor or for all.
+/// A PlatformScale lists the coefficients of an effect that has a vector or a matrix for each sensor. The
+/// list is the same for every sensor, "s3.x", and is made for one sensor or for all.
 namespace mgtd::calib::effects::laws {
 
 class PlatformScale {

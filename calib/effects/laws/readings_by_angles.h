@@ -6,7 +6,8 @@
 
 #include "proto/pose.h"
 
-/// What the sensors read by the angles of the table, learnt from the dwells of a run:
+/// ReadingsByAngles predicts the readings of the sensors from the angles of the table, as learnt from the
+/// dwells of a run:
 ///
 ///     y(angles) = L (R(angles), 1)
 ///

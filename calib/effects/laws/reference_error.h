@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/effects/laws/site_effect.h"
 
-/// `site.reference-error`: the heading error of a scalar reference that rides on the platform.
+/// `site.reference-error` is the heading error of a scalar reference that rides on the platform.
 ///
 ///     f = |B(0)| + k u + u' K u,   u = direction of the field in the platform frame
 ///     k: kx ky kz;  K symmetric and traceless: kxx kyy kxy kxz kyz;  all in nT

@@ -7,7 +7,7 @@
 #include "calib/effects/laws/dipole_field.h"
 #include "calib/effects/laws/site_effect.h"
 
-/// `site.dipole`: a magnet or a piece of iron near the array.
+/// `site.dipole` is the field of a magnet or a piece of iron near the array.
 ///
 ///     B(x) += D(x - place - shift) - D(-place - shift),   D as in dipole_field.h
 ///

@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/effects/effect.h"
 
-/// What effects of the site and of the scalar reference have in common: coefficients of the whole array, and
-/// the need of the attitude.
+/// SiteEffect is the base of the effects of the site and of the scalar reference: they have coefficients of
+/// the whole array, and they need the attitude.
 namespace mgtd::calib::effects::laws {
 
 template <class Self>

@@ -3,8 +3,8 @@
 #include "calib/effects/effect.h"
 #include "proto/units.h"
 
-/// The table does not stand where its angles say. Input and output: azimuth, pitch, roll, two tilts of the
-/// azimuth axis (sensor_equations.h, table_rotation).
+/// These effects describe how the table stands off from where its angles say. Input and output: azimuth,
+/// pitch, roll, two tilts of the azimuth axis (sensor_equations.h, table_rotation).
 ///
 ///     table.eccentricity  azimuth += e1 cos az + e2 sin az + e3 cos 2az + e4 sin 2az     deg
 ///     table.angle-scale   azimuth += 1e-6 kappa azimuth     ppm; azimuth as recorded, whole turns included

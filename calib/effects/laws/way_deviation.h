@@ -6,7 +6,7 @@
 #include "calib/effects/laws/readings_by_angles.h"
 #include "proto/pose.h"
 
-/// How far the table stood off its angles on the way from one dwell to the next.
+/// way_deviations() estimates how far the table stood off its angles on the way from one dwell to the next.
 ///
 /// Known are, as well as the readings tell (readings_by_angles.h), the deviations at both dwells. Where an
 /// axis turns back, nothing is known of any: the table ends one move there (it goes beyond the pose, to

@@ -6,8 +6,9 @@
 
 namespace mgtd::calib::effects::library {
 
-/// What the coefficients of an effect make of the attitude of s1, where the effect can turn all sensors: to
-/// first order a turn about its axis k of the sum over coefficients of row(k) times them. 3 x coefficients.
+/// turn_of_first_sensor() says how the coefficients of an effect that can turn all sensors turn sensor s1: to
+/// first order, about its axis k by the sum over coefficients of row(k) times them. The matrix is
+/// 3 x coefficients.
 ///
 ///     axis.orthogonality.temperature, ...2    (chi_cb - chi_bc) / 2, k b c in cyclic order
 ///     platform.thermal-bending                w_k, where there is another sensor

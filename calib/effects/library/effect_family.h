@@ -9,8 +9,9 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/library.h"
 
-/// The library of effects as data: what each family is, how large it is in practice, how it can be told
-/// apart, and how to make it. One source for the program, its pages and its tests.
+/// An EffectFamily describes one effect of the library as data: what it is, how large it is in practice, how
+/// it can be told apart, and how to make it. These descriptions are the one source for the program, its pages
+/// and its tests.
 namespace mgtd::calib::effects::library {
 
 /// A fixed number of an effect that a score test tries one after the other, because the effect is not linear

@@ -5,7 +5,7 @@
 
 #include "calib/effects/library/effect_family.h"
 
-/// The library as an operator reads it.
+/// These functions write the library of effects as an operator reads it.
 namespace mgtd::calib::effects::library {
 
 /// One line for each effect, by level.

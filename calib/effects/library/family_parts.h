@@ -5,7 +5,7 @@
 #include "calib/effects/laws/axis_effect.h"
 #include "calib/effects/library/effect_family.h"
 
-/// What the descriptions of the families are put together from.
+/// The descriptions of the effects in the library are put together from these parts.
 namespace mgtd::calib::effects::library {
 
 /// Scales of an effect of the axes, and of one that is a vector or a rotation of each sensor.

@@ -7,7 +7,8 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/effect_spec.h"
 
-/// The effects that can be put in the model by name (`--with`). What they are: effect_family.h.
+/// make_effect() makes an effect of the library by its name, so that it can be put in the model (`--with`).
+/// effect_family.h says what each effect is.
 namespace mgtd::calib::effects::library {
 
 /// Names that make_effect knows, in the order they are listed to the user.

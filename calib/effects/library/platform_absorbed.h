@@ -3,7 +3,7 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/laws/platform_effect.h"
 
-/// Effects of the platform that the twelve parameters of a sensor swallow whole in a uniform field. They are
+/// The twelve parameters of a sensor absorb these effects of the platform whole in a uniform field. They are
 /// here so that this can be shown; a fit with one of them is refused with the reason.
 ///
 ///     platform.hard-iron   b_i += h_i                        nT        part of the offsets

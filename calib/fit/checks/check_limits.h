@@ -2,8 +2,8 @@
 #pragma once
 #include "proto/units.h"
 
-/// Limits of the checks of a calibration, in SI units and radians. No flag changes them: a calibration that
-/// was accepted means the same everywhere.
+/// These are the limits of the checks of a calibration, in SI units and radians. No flag changes them: a
+/// calibration that was accepted means the same everywhere.
 namespace mgtd::calib::fit::checks {
 
 /// Scale factors of an axis. A fluxgate is built to parts in a thousand; a factor of two is another sensor,

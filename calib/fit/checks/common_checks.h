@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::fit::checks {
 
-/// The checks that every method has to pass: scale factors, non-orthogonality, volume and total field.
+/// common_checks() makes the checks that every method has to pass: scale factors, non-orthogonality, volume
+/// and total field.
 [[nodiscard]] std::vector<Check> common_checks(const FitReport& report);
 
 /// Whether so many poses contradict the others that none can be trusted.

@@ -6,7 +6,8 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/joint/joint_setup.h"
 
-/// What holds the freedoms that the poses leave, in words: the text `gauge` of a calibration.
+/// gauge_text() says in words what holds the freedoms that the poses leave open; this is the text `gauge` of
+/// a calibration.
 namespace mgtd::calib::fit::checks {
 
 [[nodiscard]] std::string gauge_text(const FitReport& report);

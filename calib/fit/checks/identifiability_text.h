@@ -5,7 +5,7 @@
 
 #include "calib/fit/joint/identifiability.h"
 
-/// What the poses do not determine, in words.
+/// These functions say in words what the poses do not determine.
 namespace mgtd::calib::fit::checks {
 
 /// "s1 offset z with s1 scale z"

@@ -5,9 +5,10 @@
 #include "calib/calibration/calibration.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// Whether the readings that a joint fit kept agree with each other. A gross reading that bends the
-/// calibration towards itself shows in one of three places: a few residuals far above most, one pose on which
-/// the result rests, or poses that were left out and are missed by more than those that were fitted.
+/// Agreement says whether the readings that a joint fit kept agree with each other. A gross reading that
+/// bends the calibration towards itself shows in one of three places: a few residuals far above most, one
+/// pose on which the result rests, or poses that were left out and are missed by more than those that were
+/// fitted.
 namespace mgtd::calib::fit::joint {
 
 /// Ratio of the residual's rms to the rms that its median implies, above which a few readings are far off.

@@ -7,7 +7,8 @@
 #include "calib/fit/joint/reference_turn.h"
 #include "proto/error.h"
 
-/// The sense in which the angles of a table are counted, beside a vector reference.
+/// check_angle_sense() finds a table angle that is counted in the wrong sense, by comparison with a vector
+/// reference.
 ///
 /// The directions that the sensors saw are compared with those of the reference, turned by the angles of the
 /// table as they stand (rms angle m) and with one of them of the other sign (m'). Where m is above 1 degree

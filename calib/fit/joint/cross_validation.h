@@ -5,8 +5,8 @@
 
 #include "calib/fit/joint/joint_fit.h"
 
-/// Cross-validation in one step: what the poses of a fold are missed by when the others alone are fitted. Ten
-/// folds, contiguous in time.
+/// These functions cross-validate a joint fit in one step: they tell by how much the fit misses the poses of
+/// a fold when the others alone are fitted. There are ten folds, contiguous in time.
 ///
 /// The fit without a fold is one Gauss-Newton step from the fit with it: with S and g the normal equations of
 /// all and S_k, g_k the share of the fold, (S - S_k) dx = g - g_k. One pass over the poses serves all folds,

@@ -6,10 +6,11 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// What a model without an effect does to the calibration, if the effect acts with these coefficients: the
-/// parameters take up what they can of it, dp = S_pp^-1 S_pe c, with S the information of the fit with the
-/// effect (p: its fixed block without the effect, e: the effect), nuisances eliminated. The shift as it shows
-/// in the tensor of a uniform field of the run's strength, root mean square over all attitudes.
+/// effect_impact() says how wrong a calibration becomes when its model lacks an effect that acts with these
+/// coefficients: the parameters take up what they can of it, dp = S_pp^-1 S_pe c, with S the information of
+/// the fit with the effect (p: its fixed block without the effect, e: the effect), nuisances eliminated. The
+/// shift is given as it shows in the tensor of a uniform field of the run's strength, root mean square over
+/// all attitudes.
 ///
 /// What the effect does to the readings of a survey itself is not in it.
 struct EffectImpact {

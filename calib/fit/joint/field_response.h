@@ -8,8 +8,8 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// What a change dp of its 12 parameters makes of the corrected field of a sensor, in the platform frame:
-/// -gain by_parameters dp, gain = R (C A)^-1.
+/// A FieldResponse says how the corrected field of a sensor changes when its 12 parameters change by dp: by
+/// -gain by_parameters dp in the platform frame, gain = R (C A)^-1.
 struct FieldResponse {
   Eigen::Matrix3d gain;                                               ///< of a change of the reading
   Eigen::Matrix<double, 3, sensor::kSensorParameters> by_parameters;  ///< dy/dp, nT for each unit of p

@@ -7,9 +7,10 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// Standard deviation in nT that a covariance of the parameters (12 a sensor, s1 first) gives a component of
-/// the corrected field: root mean square over sensors, components and all attitudes of a field of strength F.
-/// As calibration_tensor_sd (tensor_uncertainty.h), for arrays that see no gradient.
+/// calibration_field_sd_nT() gives the standard deviation of a component of the corrected field, in nT, that
+/// follows from a covariance of the parameters (12 a sensor, s1 first): root mean square over sensors,
+/// components and all attitudes of a field of strength F. It is to arrays that see no gradient what
+/// calibration_tensor_sd (tensor_uncertainty.h) is to others.
 [[nodiscard]] double calibration_field_sd_nT(const PerSensor<sensor::SensorModel>& sensors,
                                              const Eigen::MatrixXd& covariance, double f_nT);
 

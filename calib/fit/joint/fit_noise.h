@@ -6,8 +6,9 @@
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-/// The noise that weighs a joint fit, estimated with it: of the readings from the spreads within the dwells,
-/// else from the residuals; of the table's angles always from what they had to be corrected by.
+/// FitNoise holds the noise that weighs a joint fit and is estimated with it: that of the readings from the
+/// spreads within the dwells, else from the residuals; that of the table's angles always from what they had
+/// to be corrected by.
 namespace mgtd::calib::fit::joint {
 
 /// Estimates do not go below: 0.1 pT.

@@ -9,7 +9,8 @@
 #include "calib/fit/joint/pose_model.h"
 #include "calib/linear/parts.h"
 
-/// A joint fit pose by pose, the nuisances of each pose (its attitude and field) eliminated.
+/// followed() eliminates the nuisances of one pose of a joint fit (its attitude and field);
+/// sum_over_followed() adds up what all poses contribute.
 namespace mgtd::calib::fit::joint {
 
 /// One pose whose nuisances follow every change of its readings. Each row is divided by the standard

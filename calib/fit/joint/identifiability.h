@@ -6,7 +6,7 @@
 
 #include "calib/fit/joint/joint_problem.h"
 
-/// Which combinations of parameters the poses do not determine.
+/// Identifiability says which combinations of parameters the poses do not determine.
 ///
 /// The information matrix is put into nanotesla at the mean field (offsets as they are, scale factors and
 /// angles times F), the common rotation is taken out (it turns the platform frame and leaves the tensor of a

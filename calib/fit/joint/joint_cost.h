@@ -4,7 +4,7 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// What reduce() says of the cost, to the digit, without the normal equations.
+/// cost_of() computes the same cost as reduce(), to the digit, without the normal equations.
 [[nodiscard]] JointCost cost_of(const JointProblem& problem, const JointState& state);
 
 }  // namespace mgtd::calib::fit::joint

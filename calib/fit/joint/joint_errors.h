@@ -6,7 +6,7 @@
 #include "calib/fit/fit_report.h"
 #include "calib/fit/joint/joint_fit.h"
 
-/// How far corrected readings are from what they should be, in the sample and out of it.
+/// JointErrors says how far corrected readings are from what they should be, in the sample and out of it.
 namespace mgtd::calib::fit::joint {
 
 struct JointErrors {

@@ -10,7 +10,7 @@
 #include "calib/fit/joint/wandering_estimate.h"
 #include "calib/fit/quantisation.h"
 
-/// What only a joint fit finds out, as values: part of FitReport.
+/// JointFindings holds what only a joint fit finds out, as values; it is part of FitReport.
 namespace mgtd::calib::fit::joint {
 
 struct JointFindings {

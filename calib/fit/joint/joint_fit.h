@@ -10,7 +10,7 @@
 #include "calib/fit/joint/outliers.h"
 #include "calib/fit/quantisation.h"
 
-/// Joint maximum likelihood over all poses and sensors (method, section 5).
+/// fit_joint() fits all sensors together by maximum likelihood over all poses (method, section 5).
 ///
 /// Noise: from the spreads within the dwells where every pose has them, else from the residuals, iterated;
 /// pooled per axis either way. The standard deviation of the table angles is estimated. Observations that all

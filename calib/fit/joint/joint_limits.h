@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Where the iterations of a joint fit stop. Falls are of chi-square, without unit; no flag changes them.
+/// These limits say where the iterations of a joint fit stop. Falls are of chi-square, without unit; no flag
+/// changes them.
 namespace mgtd::calib::fit::joint {
 
 /// Steps of one solution. A fit that the poses determine needs fewer than twenty.

@@ -15,7 +15,7 @@
 #include "proto/pose.h"
 #include "proto/units.h"
 
-/// What the joint fit observes and what it solves for (method, section 5).
+/// A JointProblem says what the joint fit observes and what it solves for (method, section 5).
 ///
 /// Observations of pose k, each with its own standard deviation:
 ///     3N readings  y_i = axis(C_i A_i R_i' b_i) + I_i,   b_i = platform(R_k B(R_k' r_i))

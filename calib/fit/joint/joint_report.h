@@ -5,8 +5,9 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// A fit by joint maximum likelihood: everything that the two-step method reports, the effects, the outlier
-/// nodes, and what the poses do not determine. The calibration has no gauge text, no checks and no seal yet.
+/// joint_report() fits a pose table by joint maximum likelihood and reports everything that the two-step
+/// method reports, the effects, the outlier nodes, and what the poses do not determine. The calibration has
+/// no gauge text, no checks and no seal yet.
 [[nodiscard]] Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options);
 
 [[nodiscard]] JointOptions joint_options(const FitOptions& options);

@@ -10,8 +10,8 @@
 #include "calib/fit/readings.h"
 #include "proto/units.h"
 
-/// From a pose table to the joint problem: which poses take part, what each observation weighs, which gauge
-/// holds.
+/// joint_problem() makes the joint problem from a pose table: it decides which poses take part, what each
+/// observation weighs and which gauge holds.
 namespace mgtd::calib::fit::joint {
 
 struct JointOptions {

@@ -7,7 +7,8 @@
 #include "calib/fit/joint/pose_model.h"
 #include "proto/error.h"
 
-/// Least squares of a JointProblem: Gauss-Newton, damped (Levenberg-Marquardt) only where a step fails.
+/// solve() finds the least squares of a JointProblem by Gauss-Newton, damped (Levenberg-Marquardt) only where
+/// a step fails.
 ///
 /// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per
 /// pose. Each pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear

@@ -3,7 +3,8 @@
 #include "calib/fit/joint/joint_problem.h"
 #include "proto/error.h"
 
-/// A start for the joint fit from the poses alone, for any mounting, handedness and offset:
+/// joint_start() finds a start for the joint fit from the poses alone, for any mounting, handedness and
+/// offset:
 ///   1. each sensor by itself: sensor_start.h;
 ///   2. sensors to each other: Procrustes over all poses, reflections allowed;
 ///   3. sensors to the table: the rotation Q and the site direction n that best explain Q u_k = T_k n,

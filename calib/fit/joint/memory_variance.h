@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/fit/joint/joint_problem.h"
 
-/// What an effect with a memory adds to the noise of a reading, because the way of the table before the pose
-/// is known only as well as the table's angles are (Effect::sd_nT_per_rad):
+/// An effect with a memory adds to the noise of a reading, because the way of the table before the pose is
+/// known only as well as the table's angles are (Effect::sd_nT_per_rad):
 ///
 ///     var(y) = var(noise) + (sd_nT_per_rad table_sd_rad)²
 ///

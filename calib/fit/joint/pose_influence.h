@@ -5,7 +5,7 @@
 
 #include "calib/fit/joint/joint_fit.h"
 
-/// How much of a calibration hangs on each single pose.
+/// pose_influences() says how much of a calibration hangs on each single pose.
 ///
 /// With S the information of the fixed block and S_k, g_k the shares of pose k in it and in the descent
 /// direction, the nuisances of the pose eliminated,

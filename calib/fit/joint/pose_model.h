@@ -6,8 +6,8 @@
 #include "calib/effects/level_terms.h"
 #include "calib/fit/joint/joint_problem.h"
 
-/// The measurement model of one pose, exact, with its Jacobian. Levels in order: table, site, platform,
-/// sensor, axis.
+/// A PoseModel computes the readings that the measurement model predicts for a pose, exactly and with their
+/// Jacobian. Levels in order: table, site, platform, sensor, axis.
 namespace mgtd::calib::fit::joint {
 
 struct PoseLinear {

@@ -3,7 +3,7 @@
 #include "calib/calibration/calibration.h"
 #include "calib/fit/joint/joint_solver.h"
 
-/// What the residuals of a solved joint problem say about its noise and its table.
+/// PoseResiduals holds what the residuals of a solved joint problem say about its noise and its table.
 namespace mgtd::calib::fit::joint {
 
 /// Observations of one pose in whitened units: the readings, the scalar reference, the attitude.

@@ -4,7 +4,8 @@
 
 #include "proto/pose.h"
 
-/// How well a vector reference agrees with what else measures the field, beside what `ref_sd_nT` says of it.
+/// reference_scatter() measures how well a vector reference agrees with what else measures the field, and
+/// compares that with what `ref_sd_nT` says.
 ///
 /// Against f_nT, where at least 20 poses on a table have both: s^2 = var(|r| - f) - sd(f)^2. No model is in
 /// that; how differently the field moves at the two places is.

@@ -7,7 +7,7 @@
 #include "calib/fit/joint/joint_problem.h"
 #include "proto/error.h"
 
-/// The turn R_SR of a vector reference that stands still beside the table:
+/// R_SR is the turn of a vector reference that stands still beside the table:
 ///
 ///     b_k = F_k R_k R_SR r_k/|r_k|        R_k site frame to platform frame, by the angles of the table
 ///

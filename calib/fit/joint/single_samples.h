@@ -6,7 +6,8 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// So many poses of which none says how many samples it is the mean of are a recording of single samples.
+/// Poses are taken as a recording of single samples when there are at least this many and none says how many
+/// samples it is the mean of.
 inline constexpr std::size_t kRecording = 300;
 
 /// Whether the poses that are fitted are the samples of a recording.

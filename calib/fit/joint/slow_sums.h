@@ -5,9 +5,9 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/wandering.h"
 
-/// What a joint fit says about the terms of offsets that wander (wandering.h): its normal equations, bordered
-/// by one column per channel and term, for offsets of unit size. Column kWanderingTerms c + j is term j of
-/// channel c.
+/// slow_sums() computes what a joint fit says about the terms of offsets that wander (wandering.h): its
+/// normal equations are bordered by one column per channel and term, for offsets of unit size. Column
+/// kWanderingTerms c + j is term j of channel c.
 namespace mgtd::calib::fit::joint {
 
 /// The terms of the run of these poses.

@@ -6,8 +6,8 @@
 
 namespace mgtd::calib::fit::joint {
 
-/// sensor::over_channels(), with the three of one sensor unrolled besides the twelve of the cross: a
-/// recording of one sensor has tens of thousands of poses.
+/// over_unrolled_channels() does what sensor::over_channels() does, and unrolls the three channels of one
+/// sensor besides the twelve of the cross: a recording of one sensor has tens of thousands of poses.
 template <class Expression>
 decltype(auto) over_unrolled_channels(Eigen::Index channels, Expression&& expression) {
   if (channels == 3) return expression(Eigen::fix<3>);

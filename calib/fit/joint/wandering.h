@@ -5,7 +5,7 @@
 
 #include "calib/calibration/tensor.h"
 
-/// Offsets that wander: the slow noise of a fluxgate, which lasts from one pose to the next.
+/// The offset of a fluxgate wanders: its slow noise lasts from one pose to the next.
 ///
 /// Over a run of length T the offset of channel c, less its mean over the run, has the expansion
 ///

@@ -5,7 +5,8 @@
 
 #include "calib/fit/joint/wandering_estimate.h"
 
-/// The uncertainty of a joint fit whose offsets wander (wandering_estimate.h says which, and how fast).
+/// covariance_with_wandering() computes the uncertainty of a joint fit whose offsets wander
+/// (wandering_estimate.h says which, and how fast).
 namespace mgtd::calib::fit::joint {
 
 /// Covariance of the fixed block of an ordinary fit whose offsets wander, each offset as it is at the end of

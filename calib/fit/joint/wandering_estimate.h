@@ -6,7 +6,8 @@
 
 #include "calib/fit/joint/slow_sums.h"
 
-/// Which offsets wander, and how fast, from the residual of a joint fit (wandering.h).
+/// A WanderingEstimate says which offsets wander, and how fast, as the residual of a joint fit shows it
+/// (wandering.h).
 ///
 /// With everything else of the model projected out, the residual r has covariance sigma^2 (I + sum_c theta_c
 /// U_c U_c'), U_c the terms of channel c for a walk or flicker of unit size. The sizes are those of the

@@ -2,7 +2,8 @@
 #pragma once
 #include "calib/fit/joint/joint_problem.h"
 
-/// A problem or a state with all but its poses, to put others in: a part of the poses costs no copy of all.
+/// without_poses() copies a problem or a state with all but its poses, to put others in: a part of the poses
+/// then costs no copy of all.
 namespace mgtd::calib::fit::joint {
 
 [[nodiscard]] JointProblem without_poses(const JointProblem& problem);

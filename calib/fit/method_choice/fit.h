@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/fit/fit_report.h"
 
-/// From a pose table to a calibration and everything an operator must know about it.
+/// fit() makes a calibration from a pose table, and reports everything an operator must know about it.
 namespace mgtd::calib::fit::method_choice {
 
 /// Refuses (ErrorCode::refused), with what was measured and what to do: too few poses, poses about one axis

@@ -6,8 +6,8 @@
 #include "calib/fit/readings.h"
 #include "calib/fit/two_step/two_step.h"
 
-/// The poses that the two-step method is given: where the readings look spoilt, those that agree with each
-/// other (consensus.h). It leaves out whole poses, whatever of them is wrong.
+/// agreeing_readings() chooses the poses that the two-step method is given: where the readings look spoilt,
+/// those that agree with each other (consensus.h). It leaves out whole poses, whatever of them is wrong.
 namespace mgtd::calib::fit::two_step {
 
 struct AgreeingReadings {

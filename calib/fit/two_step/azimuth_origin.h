@@ -6,8 +6,9 @@
 #include "calib/fit/azimuth_gauge.h"
 #include "calib/fit/two_step/step2.h"
 
-/// The gauge of step 2. The standard set leaves one turn about Z common to the four sensors: the direction D
-/// of the horizontal field in the platform frame at azimuth zero. It is, in this order,
+/// azimuth_origin() fixes the azimuth of the platform frame, which step 2 leaves open. The standard set
+/// leaves one turn about Z common to the four sensors: the direction D of the horizontal field in the
+/// platform frame at azimuth zero. It is, in this order,
 ///   - given (the operator's declination),
 ///   - found from poses that tilt: their table angles T_k say where the field was, T_k B_site = b_k,
 ///   - set so that the mean gamma of the four sensors is zero.

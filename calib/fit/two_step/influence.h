@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/fit/two_step/two_step.h"
 
-/// Uncertainty of the two-step estimate, to first order (delta method): the influence of every single
-/// observation on every parameter, followed through both steps.
+/// influence() computes the uncertainty of the two-step estimate, to first order (delta method): it follows
+/// the influence of every single observation on every parameter through both steps.
 ///
 ///   step 1     dp_i  = -(J'J)^-1 sum_k J_k' (n' G dy_k - dF_k),   J = n' d(b)/d(p), n = b/|b|, G = R (CA)^-1
 ///   field      db_ik = G dy_ik + D_ik dp_i + (dT_k/dangles) B dangles_k,   relative to F_k in step 2

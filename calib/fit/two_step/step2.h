@@ -8,8 +8,8 @@
 #include "calib/fit/readings.h"
 #include "calib/sensor/step1.h"
 
-/// Step 2: the sensors to the platform frame, from a turn of the level table about platform Z (the standard
-/// set).
+/// Step 2 aligns the sensors with the platform frame, from a turn of the level table about platform Z (the
+/// standard set).
 ///
 ///     P Tz = Bz,   P Tx = Bh cos(D - az),   P Ty = Bh sin(D - az)          (eqs. 16-18)
 ///

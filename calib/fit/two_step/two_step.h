@@ -7,7 +7,8 @@
 #include "calib/fit/two_step/step2.h"
 #include "calib/sensor/step1.h"
 
-/// Both steps: the estimate alone, without its uncertainty.
+/// two_step() carries out both steps of the two-step method and gives the estimate alone, without its
+/// uncertainty.
 namespace mgtd::calib::fit::two_step {
 
 struct TwoStep {

@@ -4,8 +4,8 @@
 
 namespace mgtd::calib::fit::two_step {
 
-/// A fit by the simplified or the two-step method. The calibration has no gauge text, no checks and no seal
-/// yet.
+/// two_step_report() fits a pose table by the simplified or the two-step method. The calibration has no gauge
+/// text, no checks and no seal yet.
 [[nodiscard]] Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& options);
 
 }  // namespace mgtd::calib::fit::two_step

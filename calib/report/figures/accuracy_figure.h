@@ -6,9 +6,9 @@
 
 #include "calib/report/figures/figure.h"
 
-/// How the tensor became known: standard error of its worst component by the calibration alone, against the
-/// time or the poses measured, on log axes, with the error that was wanted and the guide 1/sqrt(n) through
-/// the last point.
+/// accuracy_figure() shows how the tensor became known during a run: the standard error of its worst
+/// component by the calibration alone, against the time or the poses measured, on log axes, with the error
+/// that was wanted and the guide 1/sqrt(n) through the last point.
 namespace mgtd::calib::report::figures {
 
 struct AccuracyValues {

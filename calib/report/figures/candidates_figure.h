@@ -5,8 +5,9 @@
 
 #include "calib/report/figures/figure.h"
 
-/// What could be missing from the model: the size of each candidate in units of its own uncertainty, with
-/// those that these poses cannot tell apart joined by a bracket, and what could not be tested at all.
+/// candidates_figure() shows what could be missing from the model: the size of each candidate in units of its
+/// own uncertainty, with those that these poses cannot tell apart joined by a bracket, and what could not be
+/// tested at all.
 namespace mgtd::calib::report::figures {
 
 struct Candidate {

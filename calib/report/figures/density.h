@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-/// Many points as few numbers.
+/// These functions reduce the many points of a plot to a few numbers.
 namespace mgtd::calib::report::figures {
 
 /// Points that fell into the squares of a grid over 0..1 x 0..1.

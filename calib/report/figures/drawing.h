@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-/// SVG text, element by element. Coordinates are in units of the viewBox, y downwards, written with one
-/// decimal: the same values give the same text.
+/// A Drawing writes a picture as SVG text, element by element. Coordinates are in units of the viewBox, y
+/// downwards, written with one decimal: the same values give the same text.
 ///
 /// A colour is a presentation attribute, so that the text alone is a complete picture for a paper, and a
 /// class, so that the style of a page (figure_style()) can set other colours for a dark screen. There is no

@@ -5,8 +5,9 @@
 
 namespace mgtd::calib::report::figures {
 
-/// Text as HTML and SVG need it, inside an element or an attribute in quotes: `&`, `<`, `>` and both quotes
-/// become references. What XML cannot hold (control characters, bytes that are no UTF-8) becomes U+FFFD.
+/// escaped() writes text as HTML and SVG need it, inside an element or an attribute in quotes: `&`, `<`, `>`
+/// and both quotes become references. What XML cannot hold (control characters, bytes that are no UTF-8)
+/// becomes U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 /// Length of the well-formed UTF-8 character at the start of `text`; 0 where there is none.

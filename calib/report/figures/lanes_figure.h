@@ -7,9 +7,9 @@
 #include "calib/report/figures/figure.h"
 #include "calib/report/figures/plot.h"
 
-/// One time axis, many lanes: what happened at the same time is seen in one look. Gaps are hatched in every
-/// lane, with their reason. A lane of more than kMostMarks values shows the lowest, the highest and the mean
-/// of each column.
+/// lanes_figure() draws many lanes over one time axis, so that what happened at the same time is seen in one
+/// look. Gaps are hatched in every lane, with their reason. A lane of more than kMostMarks values shows the
+/// lowest, the highest and the mean of each column.
 namespace mgtd::calib::report::figures {
 
 struct Lane {

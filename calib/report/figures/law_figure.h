@@ -5,7 +5,8 @@
 
 #include "calib/report/figures/figure.h"
 
-/// The shape of a law over what it depends on, found without a formula, and the formulas that could be it.
+/// law_figure() draws the curve of a law over what it depends on, found without a formula, and the formulas
+/// that could be it.
 namespace mgtd::calib::report::figures {
 
 struct LawFormulaValues {

@@ -5,7 +5,7 @@
 
 #include "calib/report/figures/figure.h"
 
-/// What a run cannot see, and what it cannot tell apart.
+/// These figures show what a run cannot see, and what it cannot tell apart.
 namespace mgtd::calib::report::figures {
 
 /// Smallest size of each effect that would have been seen, over the size at which it usually occurs.

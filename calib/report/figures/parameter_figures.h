@@ -5,7 +5,8 @@
 
 #include "calib/report/figures/figure.h"
 
-/// Parameters over calibrations, and what effects in the model cost and bring.
+/// These figures show how parameters move from calibration to calibration, and what effects in the model cost
+/// and bring.
 namespace mgtd::calib::report::figures {
 
 /// A year of a rig: for each sensor, the shift of each parameter from one calibration to the next, in

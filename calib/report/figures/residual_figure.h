@@ -6,9 +6,9 @@
 #include "calib/report/figures/figure.h"
 #include "calib/report/figures/plot.h"
 
-/// What the model leaves, against something that was recorded. Beside it, on equal axes, what is left with
-/// the effects in the model. Over the points stand the means of equally filled bins with two standard errors,
-/// at the mean of what lies in each bin.
+/// residual_figure() draws what the model leaves against something that was recorded. Beside it, on equal
+/// axes, stands what is left with the effects in the model. Over the points stand the means of equally filled
+/// bins with two standard errors, at the mean of what lies in each bin.
 namespace mgtd::calib::report::figures {
 
 struct ResidualView {

@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-/// Values to places on the drawing.
+/// A Scale maps values of an axis to places on the drawing.
 namespace mgtd::calib::report::figures {
 
 enum class ScaleKind { linear, log };

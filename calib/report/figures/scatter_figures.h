@@ -5,8 +5,8 @@
 
 #include "calib/report/figures/figure.h"
 
-/// Three ways of looking at all residuals together: are they normal, do they forget, and do they follow one
-/// effect?
+/// These figures show all residuals together in three ways: whether they are normal, whether those of one
+/// pose depend on the poses before, and whether they follow one effect.
 namespace mgtd::calib::report::figures {
 
 /// Residuals in units of their noise, in order, against the normal quantiles of their ranks, with the

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-/// Directions on the sphere, and the sphere on paper.
+/// These functions map the sphere of directions to paper and find the holes between directions on it.
 namespace mgtd::calib::report::figures {
 
 /// Of the Mollweide projection; x within 2√2 either side of the middle, y within √2.

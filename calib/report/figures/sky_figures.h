@@ -6,7 +6,7 @@
 
 #include "calib/report/figures/figure.h"
 
-/// Equal-area maps of directions (sky.h).
+/// These figures are equal-area maps of directions (sky.h).
 namespace mgtd::calib::report::figures {
 
 /// What is left, over the direction of the field in one sensor.

@@ -5,7 +5,7 @@
 
 #include "calib/report/figures/scale.h"
 
-/// Where an axis is marked, and with which numbers.
+/// Ticks says where an axis is marked, and with which numbers.
 namespace mgtd::calib::report::figures {
 
 struct Tick {

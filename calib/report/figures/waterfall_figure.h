@@ -6,10 +6,11 @@
 
 #include "calib/report/figures/figure.h"
 
-/// What each effect takes out of the error, on log axes, down to the noise: of the readings (nT) and of the
-/// tensor (nT/m). Parts add in squares. Two bars for each effect: from the error without any effect to that
-/// with this one alone ("added first"), and from the error without this one to that with all ("dropped
-/// last"). Where the two differ in length, the effect shares what it explains with another.
+/// waterfall_figure() shows, on log axes, what each effect takes out of the error, down to the noise: of the
+/// readings (nT) and of the tensor (nT/m). Parts add in squares. Two bars for each effect: from the error
+/// without any effect to that with this one alone ("added first"), and from the error without this one to
+/// that with all ("dropped last"). Where the two differ in length, the effect shares what it explains with
+/// another.
 namespace mgtd::calib::report::figures {
 
 /// Parts of one error; each "share" is sqrt(error without^2 - error with^2).
