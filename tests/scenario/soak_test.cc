@@ -9,6 +9,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>
+#ifdef MGTD_SANITIZED
+#include <sanitizer/allocator_interface.h>
+#endif
 
 #include <cstdio>
 #include <cstdlib>
@@ -41,9 +44,17 @@ double count_in(const std::filesystem::path& directory) {
   return n;
 }
 
+double heap_bytes() {
+#ifdef MGTD_SANITIZED  // a malloc of its own
+  return static_cast<double>(__sanitizer_get_current_allocated_bytes());
+#else
+  return static_cast<double>(::mallinfo2().uordblks);
+#endif
+}
+
 Figures figures(const std::filesystem::path& store) {
   Figures out;
-  out.heap_bytes = static_cast<double>(::mallinfo2().uordblks);
+  out.heap_bytes = heap_bytes();
   long pages = 0;
   if (std::FILE* const statm = std::fopen("/proc/self/statm", "re"); statm != nullptr) {
     if (std::fscanf(statm, "%*d %ld", &pages) != 1) pages = 0;
