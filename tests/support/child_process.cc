@@ -84,6 +84,9 @@ Finished run_program(std::vector<std::string> command, const std::string& dir, s
 }
 
 bool eventually(const std::function<bool()>& condition, std::chrono::seconds limit) {
+#ifdef MGTD_SANITIZED  // what is waited for is slower, and the tests let it be
+  limit *= 5;
+#endif
   const auto deadline = Clock::now() + limit;
   while (!condition()) {
     if (Clock::now() > deadline) return false;
