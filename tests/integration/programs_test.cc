@@ -33,8 +33,8 @@ TEST(Programs, ARunFromPortsToACalibratedStream) {
   const std::string id = bench.ask({"status"}).at("cal");
   const Finished watch = bench.mgt({"watch", "--raw", "--count", "1"});
   EXPECT_THAT(watch.out, HasSubstr("\"cal\":\"" + id + "\""));
-  for (const auto& device : bench.ask({"status"}).at("devices"))
-    EXPECT_TRUE(device.at("balanced")) << device.dump();
+  const json devices = bench.ask({"status"}).at("devices");
+  for (const json& device : devices) EXPECT_TRUE(device.at("balanced")) << device.dump();
   bench.daemon().signal(SIGTERM);
   const auto ended = bench.daemon().wait();
   ASSERT_TRUE(ended);

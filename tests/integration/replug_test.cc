@@ -71,8 +71,8 @@ TEST_P(Replug, AnotherNodeUnderTheSameNameStreamsAgain) {
   fmt::print("the first tensor {:.2f} s after the replug\n", took_s);
   RecordProperty("tensor_after_ms", static_cast<int>(took_s * 1000));
   EXPECT_NE(fs::read_symlink(link), before);
-  for (const json& device : bench.ask({"status"}).at("devices"))
-    EXPECT_TRUE(device.at("balanced")) << device.dump();
+  const json devices = bench.ask({"status"}).at("devices");
+  for (const json& device : devices) EXPECT_TRUE(device.at("balanced")) << device.dump();
   if (taken >= 0) ::close(taken);
 }
 
