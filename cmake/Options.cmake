@@ -13,8 +13,6 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(mgtd_options INTERFACE "SHELL:--param ggc-min-expand=300" "SHELL:--param ggc-min-heapsize=400000")
 endif()
-# For the files that name it only: a new version then compiles those again, and not everything.
-set(MGTD_VERSION_DEFINITION MGTD_VERSION="${PROJECT_VERSION}")
 target_include_directories(mgtd_options INTERFACE ${CMAKE_SOURCE_DIR})
 
 if(MGTD_SANITIZE)

@@ -3,6 +3,7 @@
 
 #include "calib/poses/pose_table.h"
 #include "calib/poses/run_time.h"
+#include "proto/version.h"
 
 namespace mgtd::calib::fit {
 
@@ -33,7 +34,7 @@ calibration::Calibration calibration_frame(const PoseTable& table, const Reading
   c.reference = reference_of(table, readings);
   c.data_hash = poses::data_hash(table);
   c.poses = static_cast<int>(readings.poses());
-  c.software = "mgtd " MGTD_VERSION;
+  c.software = software();
   return c;
 }
 

@@ -13,6 +13,7 @@
 #include "daemon/app/service_notify.h"
 #include "daemon/serve/console/lane_request.h"
 #include "daemon/serve/console/metrics.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::app {
 namespace {
@@ -41,7 +42,7 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       worker_(io),
       core_(config_, *this),
       recording_(io, config_, quiet_),
-      stream_(io, stream_config(config_), {config_.rig_name, "mgtd " MGTD_VERSION, array_}),
+      stream_(io, stream_config(config_), {config_.rig_name, software(), array_}),
       control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
                [this](const ControlRequest& request) { return answer(request); }),
       console_{{},
@@ -107,9 +108,9 @@ serve::console::ConsoleSource DaemonApp::console_source() {
   return {.hello =
               [this] {
                 const nlohmann::ordered_json hello{
-                    {"software", "mgtd " MGTD_VERSION}, {"mode", "rig"},
-                    {"rig", config_.rig_name},          {"speed_up", config_.speed_up},
-                    {"rate_hz", config_.rate_hz},       {"array", to_json(array_)}};
+                    {"software", software()},     {"mode", "rig"},
+                    {"rig", config_.rig_name},    {"speed_up", config_.speed_up},
+                    {"rate_hz", config_.rate_hz}, {"array", to_json(array_)}};
                 return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
               },
           .metrics = [this] { return serve::console::metrics(report(), console_.server.refused()); },

@@ -12,6 +12,7 @@
 #include "daemon/plan/run_plan_json.h"
 #include "proto/calibration_request.h"
 #include "proto/status_codec.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::app {
 
@@ -21,7 +22,7 @@ Reply DaemonApp::answer(const ControlRequest& request) {
   switch (request.command) {
     case ControlCommand::version:
       return nlohmann::ordered_json{
-          {"software", "mgtd " MGTD_VERSION},
+          {"software", software()},
           {"rig", config_.rig_name},
           {"protocol", {{"major", kControlProtocolMajor}, {"minor", kControlProtocolMinor}}},
           {"stream_tcp", config_.stream_tcp},

@@ -7,6 +7,7 @@
 
 #include "daemon/acquire/clock_report.h"
 #include "daemon/app/daemon_app.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::app {
 
@@ -57,7 +58,7 @@ StatusReport DaemonApp::report() const {
   StatusReport out;
   out.at = now;
   out.uptime_s = to_seconds(now.mono - started_.mono) / config_.speed_up;
-  out.software = "mgtd " MGTD_VERSION;
+  out.software = software();
   out.rig = config_.rig_name;
   out.array = array_;
   out.speed_up = config_.speed_up;

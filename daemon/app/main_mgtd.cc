@@ -13,6 +13,7 @@
 #include "daemon/app/daemon_app.h"
 #include "daemon/app/service_notify.h"
 #include "daemon/store/store_lock.h"
+#include "proto/version.h"
 
 namespace {
 
@@ -63,7 +64,7 @@ int main(int argc, char** argv) {
       "end\n\n"
       "The operator's tool is mgt: mgt status, mgt run start, mgt watch.",
       "mgtd"};
-  app.set_version_flag("--version", MGTD_VERSION);
+  app.set_version_flag("--version", version());
   std::string config_file = "/etc/mgtd/mgtd.toml";
   bool check_only = false;
   app.add_option("--config", config_file, "the configuration")->capture_default_str();

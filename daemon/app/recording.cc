@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "proto/version.h"
+
 namespace mgtd::daemon::app {
 namespace {
 
@@ -38,7 +40,7 @@ LifeNote Recording::start(Stamp now, serve::StreamServer& stream) {
     if (config_.journal_mb > 0) journal.rotate_bytes = std::min(journal.rotate_bytes, journal.keep.bytes / 4);
     journal_.emplace(std::move(journal), now.mono);
   }
-  LifeNote life{"mgtd " MGTD_VERSION, config_.text, 0, {}};
+  LifeNote life{software(), config_.text, 0, {}};
   if (config_.ring_mb > 0) start_disk_ring(life, now, stream);
   return life;
 }

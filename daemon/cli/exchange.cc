@@ -14,6 +14,7 @@
 #include "daemon/cli/import_map_file.h"
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_file.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -29,7 +30,7 @@ store::RunHeader header_of(const PoseTable& table, const ExchangeArguments& args
   header.run_id = std::filesystem::path(args.to).stem().string();
   header.rig = "imported";
   if (!table.poses.empty() && table.poses.front().t_utc) header.started_utc = *table.poses.front().t_utc;
-  header.software = "mgtd " MGTD_VERSION;
+  header.software = software();
   header.options.geometry = geometry;
   header.options.sensor_names = store::numbered_sensors(geometry.sensors());
   header.source = std::filesystem::path(args.from).filename().string();

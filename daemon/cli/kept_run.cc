@@ -10,6 +10,7 @@
 
 #include "daemon/store/user_formulas.h"
 #include "proto/run_status.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -67,7 +68,7 @@ void add_who_option(CLI::App* command, std::string& who) {
 
 Result<void> keep_step(KeptRun& run, const std::string& action, const std::string& spec,
                        const nlohmann::json& result) {
-  const std::string who = fmt::format("{}, mgt {}", run.who.empty() ? this_user() : run.who, MGTD_VERSION);
+  const std::string who = fmt::format("{}, mgt {}", run.who.empty() ? this_user() : run.who, version());
   return run.file->append_model_step(
       {now(), who, action, spec, result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }

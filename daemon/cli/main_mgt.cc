@@ -11,6 +11,7 @@
 
 #include "daemon/cli/command.h"
 #include "proto/nearest_word.h"
+#include "proto/version.h"
 
 namespace {
 
@@ -87,7 +88,7 @@ constexpr const char* kDescription =
 int main(int argc, char** argv) {
   using namespace mgtd::daemon::cli;
   CLI::App app{kDescription, "mgt"};
-  app.set_version_flag("--version", MGTD_VERSION);
+  app.set_version_flag("--version", mgtd::version());
   app.require_subcommand(1);
   app.fallthrough();
   mgtd::daemon::cli::Session session;

@@ -18,6 +18,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/serve/console/console_server.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -62,7 +63,7 @@ std::vector<std::string> model_options(const FitFlags& f) {
 std::string hello(const ServeArguments& args, bool one) {
   std::error_code ec;
   const auto path = std::filesystem::canonical(args.what, ec);
-  return nlohmann::json{{"software", "mgt " MGTD_VERSION},
+  return nlohmann::json{{"software", std::string("mgt ") + version()},
                         {"mode", "files"},
                         {"rig", path.filename().string()},
                         {"path", path.string()},

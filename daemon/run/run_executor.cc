@@ -15,6 +15,7 @@
 #include "daemon/plan/run_plan_json.h"
 #include "daemon/run/planned_poses.h"
 #include "daemon/run/solver.h"
+#include "proto/version.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -176,7 +177,7 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
   auto file = store::RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
                                                                    .rig = config_.rig_name,
                                                                    .started_utc = now.wall,
-                                                                   .software = "mgtd " MGTD_VERSION,
+                                                                   .software = software(),
                                                                    .config = config_.text,
                                                                    .plan = to_json(*planned).dump(),
                                                                    .seed = planned->options.seed,

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/error.h"
+#include "proto/version.h"
 #include "tests/support/checkout.h"
 #include "tests/support/child_process.h"
 #include "tests/support/whole_file.h"
@@ -94,7 +95,7 @@ TEST_F(Loop, AStepIsOfWhomItIsMadeFor) {
   const json history = ask({"model", run_file()}).at("history");
   ASSERT_EQ(history.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_EQ(history.at(i).at("who"), fmt::format("the console, from ::{}, mgt {}", i + 1, MGTD_VERSION));
+    EXPECT_EQ(history.at(i).at("who"), fmt::format("the console, from ::{}, mgt {}", i + 1, version()));
   EXPECT_THAT(mgt({"add", "--help"}).out, Not(HasSubstr("--who")));
 }
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "proto/version.h"
 #include "tests/rig/config_text.h"
 #include "tests/rig/fault.h"
 #include "tests/rig/fault_client.h"
@@ -358,7 +359,7 @@ void add_commands(CLI::App& app, Arguments& args) {
 
 int main(int argc, char** argv) {
   CLI::App app{kDescription, "mgt-rig"};
-  app.set_version_flag("--version", MGTD_VERSION);
+  app.set_version_flag("--version", mgtd::version());
   app.require_subcommand(1);
   Arguments args;
   add_commands(app, args);
