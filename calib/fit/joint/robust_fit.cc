@@ -11,6 +11,7 @@
 #include "calib/fit/consensus.h"
 #include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/single_samples.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
@@ -111,8 +112,7 @@ AllReadings all_readings(const JointProblem& problem, double f_nT) {
 /// The fit of all poses that starts from the fit of some; empty where nothing comes of it.
 std::optional<RobustFit> from_some(JointProblem& problem, const std::vector<Eigen::Index>& poses, double f_nT,
                                    const FitNoise& noise, double most_left_out) {
-  JointProblem some = problem;
-  some.poses.clear();
+  JointProblem some = without_poses(problem);
   for (const Eigen::Index k : poses) some.poses.push_back(problem.poses[static_cast<std::size_t>(k)]);
   auto start = joint_start(some, f_nT);
   if (!start) return std::nullopt;
@@ -146,7 +146,8 @@ std::optional<RobustFit> from_agreeing(JointProblem& problem, const AllReadings&
 }
 
 /// The fit of a long recording that starts from the fit of a share of its samples, evenly spread in time, so
-/// that few iterations are made with all of them; empty where the recording is short or nothing comes of it.
+/// that few iterations are made with all of them; empty where the recording is short or nothing comes of it,
+/// which can leave other weights in the problem.
 std::optional<RobustFit> from_share(JointProblem& problem, double f_nT, const FitNoise& noise,
                                     double most_left_out) {
   constexpr std::size_t kShare = 2000;
@@ -155,10 +156,7 @@ std::optional<RobustFit> from_share(JointProblem& problem, double f_nT, const Fi
   if (n < kLong || !is_recording(problem)) return std::nullopt;
   std::vector<Eigen::Index> share;
   for (std::size_t i = 0; i < kShare; ++i) share.push_back(static_cast<Eigen::Index>(i * n / kShare));
-  JointProblem other = problem;
-  auto out = from_some(other, share, f_nT, noise, most_left_out);
-  if (out) problem = std::move(other);
-  return out;
+  return from_some(problem, share, f_nT, noise, most_left_out);
 }
 
 /// What two fits of the same readings are compared by: minus the logarithm of their likelihood with the
@@ -230,6 +228,7 @@ Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, d
       shared->start = *std::move(start);
       plain = *std::move(shared);
     } else {
+      if (is_recording(other)) problem = other;  // with the weights it had
       plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
     }
   }
