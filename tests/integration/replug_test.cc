@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "tests/integration/bench.h"
+#include "tests/support/parameter_name.h"
 
 namespace mgtd::testing {
 namespace {
@@ -76,7 +77,8 @@ TEST_P(Replug, AnotherNodeUnderTheSameNameStreamsAgain) {
   if (taken >= 0) ::close(taken);
 }
 
-INSTANTIATE_TEST_SUITE_P(PalmAcq, Replug, ::testing::Values("false", "true"));
+INSTANTIATE_TEST_SUITE_P(PalmAcq, Replug, ::testing::Values("false", "true"),
+                         [](const auto& info) { return parameter_name(info.param); });
 
 }  // namespace
 }  // namespace mgtd::testing

@@ -5,6 +5,7 @@
 
 #include "tests/scenario/clean_poses.h"
 #include "tests/scenario/virtual_daemon.h"
+#include "tests/support/parameter_name.h"
 
 namespace mgtd {
 namespace {
@@ -78,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(Faults, TroubleThatPasses,
                                            "garbage fluxgate1", "torn fluxgate2 for 10",
                                            "unplug scalar for 15", "stall scalar for 15",
                                            "unplug table for 5", "stall table for 5", "freeze table for 8",
-                                           "garbage table"));
+                                           "garbage table"),
+                         [](const auto& info) { return mgtd::testing::parameter_name(info.param); });
 
 /// Faults, one a second after the other.
 class TroubleThatNeedsNobody : public ::testing::TestWithParam<std::vector<const char*>> {};
@@ -111,7 +113,11 @@ INSTANTIATE_TEST_SUITE_P(Faults, TroubleThatNeedsNobody,
                                            Faults{"late table for 60", "unplug fluxgate2 for 3"},
                                            Faults{"late table for 2", "stall fluxgate1 for 3"},
                                            Faults{"mute table for 5"}, Faults{"mute table for 15"},
-                                           Faults{"stall table for 15"}, Faults{"unplug table for 5"}));
+                                           Faults{"stall table for 15"}, Faults{"unplug table for 5"}),
+                         [](const auto& info) {
+                           return mgtd::testing::parameter_name(
+                               fmt::format("{}", fmt::join(info.param, " then ")));
+                         });
 
 TEST(RunFaults, ATableWhoseCableIsPulledMayStillMove) {
   for (const char* fault : {"unplug table for 5", "mute table for 20", "stall table for 20"}) {

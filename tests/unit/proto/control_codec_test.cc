@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/control_codec.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "proto/calibration_request.h"
 #include "proto/run_request.h"
+#include "tests/support/parameter_name.h"
 
 namespace mgtd {
 namespace {
@@ -42,6 +44,10 @@ struct Bad {
   const char* id;
 };
 
+std::string name_of(const ::testing::TestParamInfo<Bad>& info) {
+  return testing::parameter_name(fmt::format("{} {}", info.index, info.param.message));
+}
+
 class BadControl : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadControl, IsRefusedUnderItsId) {
@@ -60,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{R"({"cmd":"run.stop","id":4})", "'run.stop' does not exist", "4"},
                       Bad{R"({"cmd":"version","args":[1],"id":4})", "\"args\"", "4"},
                       Bad{R"({"cmd":"version","arg":{},"id":4})", "unknown key 'arg'", "4"},
-                      Bad{R"({"cmd":"version","id":{"x":1}})", "neither a number nor text", "null"}));
+                      Bad{R"({"cmd":"version","id":{"x":1}})", "neither a number nor text", "null"}),
+    name_of);
 
 TEST(ControlCodec, RepliesSurviveBothWays) {
   const auto good = parse_reply(encode_reply("x", nlohmann::ordered_json{{"a", 1}}));

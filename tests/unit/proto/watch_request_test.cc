@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "proto/watch_request.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/parameter_name.h"
 
 namespace mgtd {
 namespace {
@@ -59,6 +62,10 @@ struct Bad {
   const char* message;
 };
 
+std::string name_of(const ::testing::TestParamInfo<Bad>& info) {
+  return testing::parameter_name(fmt::format("{} {}", info.index, info.param.message));
+}
+
 class BadWatch : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadWatch, IsRefusedWithWhatWasFoundAndARemedy) {
@@ -85,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{R"({"watch":{"from_seq":-3}})", "from_seq is -3"},
                       Bad{R"({"watch":{"from_seq":1.5}})", "from_seq is 1.5"},
                       Bad{R"({"watch":{"rate":10}})", "watch has no key 'rate'"},
-                      Bad{R"({"cmd":"run.start"})", "read-only"}));
+                      Bad{R"({"cmd":"run.start"})", "read-only"}),
+    name_of);
 
 TEST(WatchRequest, RemediesNameWhatExists) {
   EXPECT_THAT(parse_watch(R"({"watch":{"class":["X"]}})").error().remedy,

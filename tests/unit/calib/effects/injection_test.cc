@@ -4,6 +4,7 @@
 
 #include "calib/effects/library/library.h"
 #include "calib/fit/joint/joint_fit.h"
+#include "tests/support/parameter_name.h"
 #include "tests/unit/calib/effects/effect_scene.h"
 
 /// Every effect put into a run by equations written here, and found again by the fit: the coefficient within
@@ -343,10 +344,7 @@ TEST_P(Injected, IsFoundWithinItsUncertainty) {
 }
 
 std::string name_of(const ::testing::TestParamInfo<Case>& info) {
-  std::string out = info.param.spec;
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return out;
+  return mgtd::testing::parameter_name(info.param.spec);
 }
 
 INSTANTIATE_TEST_SUITE_P(Axis, Injected, ::testing::ValuesIn(axis_cases()), name_of);

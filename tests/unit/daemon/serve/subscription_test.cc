@@ -142,7 +142,8 @@ using SeqRange = std::pair<std::uint64_t, std::uint64_t>;
 INSTANTIATE_TEST_SUITE_P(FromSeq, ResumeTest,
                          ::testing::Values(Resume{0, SeqRange{0, 19}, 20}, Resume{19, SeqRange{19, 19}, 20},
                                            Resume{20, std::nullopt, 20}, Resume{25, std::nullopt, 25},
-                                           Resume{29, std::nullopt, 29}, Resume{30, std::nullopt, 30}));
+                                           Resume{29, std::nullopt, 29}, Resume{30, std::nullopt, 30}),
+                         [](const auto& info) { return "from_" + std::to_string(info.param.from_seq); });
 
 TEST(Subscription, ANumberFromAnotherLifeOfTheDaemonIsPointedOut) {
   SampleRing ring(10);

@@ -7,6 +7,7 @@
 #include "calib/criticism/search/explain.h"
 #include "calib/report/verdict_text.h"
 #include "tests/blind/planted.h"
+#include "tests/support/parameter_name.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -64,7 +65,9 @@ std::vector<Row> rows() {
           {"all", 0.05, 10},   {"all", 0.2, 100}, {"s2.y", 0.2, 100, true}};
 }
 
-INSTANTIATE_TEST_SUITE_P(Explain, WithoutPath, ::testing::ValuesIn(rows()));
+INSTANTIATE_TEST_SUITE_P(Explain, WithoutPath, ::testing::ValuesIn(rows()), [](const auto& info) {
+  return mgtd::testing::parameter_name(::testing::PrintToString(info.param));
+});
 
 }  // namespace
 }  // namespace mgtd::calib::criticism::search
