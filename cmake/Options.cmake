@@ -59,7 +59,7 @@ function(mgtd_batches target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# mgtd_unoptimised(TARGET): clang compiles files in less than half the time where it does not optimise them. For what
+# mgtd_unoptimised(TARGET): clang compiles files in about half the time where it does not optimise them. For what
 # does not compute for long, in the presets of everyday work (docs/building.md).
 function(mgtd_unoptimised target)
   if(CMAKE_BUILD_TYPE STREQUAL "Debug" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
