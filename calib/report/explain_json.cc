@@ -118,6 +118,7 @@ json to_json(const criticism::search::ExplainReport& r) {
       {"verdict", to_string(r.finding)},
       {"candidates", array_of(r.candidates, candidate_json)},
       {"named", r.named},
+      {"stand_ins", r.stand_ins},
       {"rounds", array_of(r.rounds, round_json)},
       {"maps", array_of(r.maps, [](const criticism::tests::MapScore& m) { return to_json(m); })},
       {"maps_left", array_of(r.maps_left, [](const criticism::tests::MapScore& m) { return to_json(m); })},

@@ -181,6 +181,13 @@ std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
       outliers.size() == 1 ? "is" : "are", fmt::join(poses, ", "));
 }
 
+/// Names that a law of no library takes the place of.
+std::string stand_ins_text(const criticism::search::ExplainReport& r) {
+  const bool one = r.stand_ins.size() == 1;
+  return fmt::format("{} {} only a part: a formula accounts for everything without {}.",
+                     fmt::join(r.stand_ins, ", "), one ? "describes" : "describe", one ? "it" : "them");
+}
+
 }  // namespace
 
 std::string detectable_text(const criticism::tests::Detectable& d) {
@@ -212,6 +219,7 @@ std::string sentence(const criticism::search::ExplainReport& r) {
     if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));
     before = round.fit.get();
   }
+  if (!r.stand_ins.empty()) parts.push_back(stand_ins_text(r));
   switch (r.finding) {
     case criticism::search::Finding::pass:
       parts.emplace_back(
@@ -220,12 +228,13 @@ std::string sentence(const criticism::search::ExplainReport& r) {
           "what cannot be tested.");
       break;
     case criticism::search::Finding::unknown:
+      if (!r.stand_ins.empty()) break;
       parts.emplace_back("Something is there, and no effect of the library looks like it.");
       parts.push_back(left_text(r.maps));
       parts.push_back(next_step_text(r.maps, recording));
       break;
     case criticism::search::Finding::partial:
-      if (r.left == criticism::search::Finding::pass) break;
+      if (!r.stand_ins.empty() || r.left == criticism::search::Finding::pass) break;
       parts.push_back(left_text(r.maps_left));
       parts.push_back(next_step_text(r.maps_left, recording));
       break;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calib/criticism/search/stand_ins.h"
 #include "calib/report/explain_figures.h"
 #include "calib/report/explain_json.h"
 #include "calib/report/explain_text.h"
@@ -31,7 +32,8 @@ constexpr const char* kExplainHelp =
     "chi-square that the effect would take away (1: all of it; -: the noise is not known from these poses,\n"
     "and nothing was found).\n\n"
     "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula, first without\n"
-    "what was named, for that may stand in for it, then beside it; --no-law leaves that out.\n\n"
+    "what was named: a name that formulas account for is taken back, and where none remains the verdict is\n"
+    "UNKNOWN. Else it looks beside what was named. --no-law leaves that out.\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";
@@ -73,15 +75,17 @@ int run_explain(const Session& session, const ExplainArguments& args) {
                                                   .also = formulas_of(*source, *options),
                                                   .confusion = args.confusion,
                                                   .impact = args.impact};
-  const auto explained = with_progress("explain", *options, [&](const calib::fit::FitOptions& told) {
+  auto explained = with_progress("explain", *options, [&](const calib::fit::FitOptions& told) {
     wanted.fit = told;
     return calib::criticism::search::explain(source->table, wanted);
   });
   if (!explained) return report(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
   if (!doubts) return report(session, doubts.error());
-  const auto law = args.no_law ? std::nullopt
-                               : remaining_law(source->table, *options, explained->model, explained->finding);
+  const auto law = args.no_law
+                       ? std::nullopt
+                       : law_of_the_rest(source->table, *options, explained->model, explained->finding);
+  if (law) calib::criticism::search::take_back_stand_ins(law->instead_of, *explained);
   nlohmann::json out = calib::report::to_json(*explained);
   if (auto drawn = add_figures(args, source->table, wanted, *explained, out); !drawn)
     return report(session, drawn.error());
@@ -91,9 +95,6 @@ int run_explain(const Session& session, const ExplainArguments& args) {
     print_json(out);
   } else {
     std::string text = calib::report::to_text(*explained, table_width(session));
-    if (law && !law->instead_of.empty())
-      text.insert(text.find('\n') + 1,
-                  "A formula accounts for everything, instead of what is named here: see the end.\n");
     if (!doubts->empty()) text += "\nopen since it was chosen:\n" + doubts_text(*doubts);
     text += law_text(law, *source, args.run);
     print_text(session, text);

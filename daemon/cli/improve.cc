@@ -73,7 +73,7 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   const auto whole = with_final_model(*options, improved->fit.calibration);
   const auto steps = whole ? waterfall_of(source->table, *whole) : std::nullopt;
   const auto law = whole && !args.no_law
-                       ? remaining_law(source->table, *options, whole->effects, improved->finding)
+                       ? law_of_the_rest(source->table, *options, whole->effects, improved->finding)
                        : std::nullopt;
   if (law && !law->instead_of.empty() && !args.output.empty())
     fmt::print(stderr, "{} holds {}: a formula accounts for everything without it\n", args.output,

@@ -10,9 +10,12 @@
 
 #include "calib/criticism/search/evidence.h"
 #include "calib/criticism/search/model_stage.h"
+#include "calib/criticism/search/stand_ins.h"
 #include "calib/criticism/tests/pose_points.h"
+#include "calib/discovery/remaining_law.h"
 #include "calib/fit/joint/effect_impact.h"
 #include "calib/poses/pose_table.h"
+#include "calib/report/discovery_report.h"
 #include "calib/report/explain_figures.h"
 #include "calib/report/panel_figures.h"
 #include "calib/report/parameter_history.h"
@@ -130,6 +133,22 @@ std::vector<run::RunJudgement> judgements_of(const std::string& run, const store
   return judgements ? *std::move(judgements) : std::vector<run::RunJudgement>{};
 }
 
+std::string searched_beside(const std::vector<std::string>& specs) {
+  return specs.empty() ? "the sensors' parameters alone" : fmt::format("{}", fmt::join(specs, ", "));
+}
+
+/// A law that takes the place of effects, of a run that keeps none.
+Result<void> show_law(const calib::discovery::RemainingLaw& law, ReportContent& c) {
+  auto pages = calib::report::law_pages(calib::report::to_json(*law.found, c.run));
+  if (!pages) return tl::unexpected(pages.error());
+  c.laws = *std::move(pages);
+  std::vector<std::string> specs;
+  for (const calib::effects::EffectPtr& effect : law.model) specs.push_back(effect->spec());
+  c.laws_note = fmt::format("Searched for this report beside {}; mgt discover --keep keeps it in the run.",
+                            searched_beside(specs));
+  return {};
+}
+
 /// What `mgt discover --keep` found on this run, at whatever model it had then.
 Result<void> read_laws(const ReportWishes& wishes, ReportContent& c) {
   if (!c.source.header) return {};
@@ -143,9 +162,7 @@ Result<void> read_laws(const ReportWishes& wishes, ReportContent& c) {
   auto pages = calib::report::law_pages(kept->found);
   if (!pages) return tl::unexpected(pages.error());
   c.laws = *std::move(pages);
-  c.laws_note = fmt::format("Searched {} beside {}.", kept->at,
-                            kept->model.empty() ? "the sensors' parameters alone"
-                                                : fmt::format("{}", fmt::join(kept->model, ", ")));
+  c.laws_note = fmt::format("Searched {} beside {}.", kept->at, searched_beside(kept->model));
   if (kept->data_hash != calib::poses::data_hash(c.source.table))
     c.laws_note += " The poses of this report are others than those that were searched.";
   return {};
@@ -183,6 +200,10 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
       .fit = *options, .also = formulas_of(*source, *options), .confusion = true};
   auto explained = calib::criticism::search::explain(source->table, search);
   if (!explained) return tl::unexpected(explained.error());
+  std::optional<calib::discovery::RemainingLaw> law;
+  if (explained->finding == calib::criticism::search::Finding::partial)
+    law = calib::discovery::law_instead(source->table, {.fit = *options, .checks = false}, explained->model);
+  if (law) calib::criticism::search::take_back_stand_ins(law->instead_of, *explained);
   auto history = history_of(wishes.run, *source);
   if (!history) return tl::unexpected(history.error());
   auto doubts = doubts_of(wishes.run, *source, *options);
@@ -209,6 +230,8 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
   out.limits = limit_figures(out.explained);
   if (auto drawn = draw_earlier(wishes, flags, out); !drawn) return tl::unexpected(drawn.error());
   if (auto read = read_laws(wishes, out); !read) return tl::unexpected(read.error());
+  if (law && out.laws.empty())
+    if (auto shown = show_law(*law, out); !shown) return tl::unexpected(shown.error());
   return out;
 }
 

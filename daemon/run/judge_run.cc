@@ -8,7 +8,9 @@
 
 #include "calib/criticism/search/explain.h"
 #include "calib/criticism/search/next_among.h"
+#include "calib/criticism/search/stand_ins.h"
 #include "calib/discovery/discover.h"
+#include "calib/discovery/remaining_law.h"
 #include "calib/effects/effect_context.h"
 #include "calib/effects/library/library.h"
 #include "calib/poses/pose_list.h"
@@ -48,15 +50,17 @@ std::string discovered_text(const DiscoveryReport& d) {
 
 std::string found_text(const RunEvidence& e) {
   const ExplainReport& r = e.explained;
-  if (e.formulas_alone)
-    return fmt::format("{}; {} {} a part of it", discovered_text(*e.discovered), fmt::join(r.named, ", "),
-                       r.named.size() == 1 ? "describes" : "describe");
+  const std::string stand_ins = r.stand_ins.empty()
+                                    ? ""
+                                    : fmt::format("; {} {} a part of it", fmt::join(r.stand_ins, ", "),
+                                                  r.stand_ins.size() == 1 ? "describes" : "describe");
+  if (e.formulas_account_for_all()) return discovered_text(*e.discovered) + stand_ins;
   std::string out(to_string(r.finding));
   if (!r.named.empty())
     out += fmt::format(": {}", fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "));
   if (e.discovered) {
     for (const std::string& effect : e.beside) out += fmt::format("; for the rest LIBRARY: {}", effect);
-    out += fmt::format("; for the rest {}", discovered_text(*e.discovered));
+    out += fmt::format("; for the rest {}{}", discovered_text(*e.discovered), stand_ins);
   }
   return out;
 }
@@ -127,16 +131,23 @@ void discover_in(calib::fit::FitOptions& options, RunEvidence& evidence) {
   }
 }
 
-/// Formulas without the effects that explain() names, where they account for everything.
-bool discover_alone(const calib::fit::FitOptions& options, RunEvidence& evidence) {
-  auto found =
-      calib::discovery::discover(evidence.table, {.fit = options, .looks = kMostJudgements, .checks = false});
-  if (!found || !found->accounts_for_everything()) return false;
-  evidence.discovered = *std::move(found);
-  return evidence.formulas_alone = true;
+/// Formulas that take the place of effects that explain() names: those are taken back from `explained`, and
+/// the others stay in the model.
+bool discover_instead(calib::fit::FitOptions& options, ExplainReport& explained, RunEvidence& evidence) {
+  auto law = calib::discovery::law_instead(
+      evidence.table, {.fit = options, .looks = kMostJudgements, .checks = false}, explained.model);
+  if (!law) return false;
+  calib::criticism::search::take_back_stand_ins(law->instead_of, explained);
+  evidence.discovered = *std::move(law->found);
+  options.effects = std::move(law->model);
+  return true;
 }
 
 }  // namespace
+
+bool RunEvidence::formulas_account_for_all() const {
+  return !explained.stand_ins.empty() && explained.named.empty();
+}
 
 bool RunEvidence::leaves_formulas_open() const {
   if (!discovered) return false;
@@ -158,7 +169,7 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::law) {
     out.judgement.next =
-        e.formulas_alone ? "a formula accounts for everything: mgt discover says how to keep it"
+        e.formulas_account_for_all() ? "a formula accounts for everything: mgt discover says how to keep it"
         : e.beside.empty()
             ? "a formula accounts for the rest: mgt discover says how to keep it"
             : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
@@ -181,7 +192,7 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
 Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, double minutes_left,
                         int looks_left) {
   const calib::criticism::search::ExplainOptions search{.fit = options, .looks = kMostJudgements};
-  const auto explained = calib::criticism::search::explain(table, search);
+  auto explained = calib::criticism::search::explain(table, search);
   if (!explained) return tl::unexpected(explained.error());
   RunEvidence evidence{.table = table, .explained = *explained};
   if (explained->finding == Finding::ambiguous) {
@@ -190,8 +201,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     evidence.next = *std::move(next);
   }
   if (explained->finding == Finding::partial || explained->finding == Finding::unknown) {
-    const bool stands_in = explained->model.size() > options.effects.size();
-    if (!stands_in || !discover_alone(options, evidence)) {
+    if (!discover_instead(options, *explained, evidence)) {
       options.effects = explained->model;
       discover_in(options, evidence);
     }
@@ -206,7 +216,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     const bool names_open =
         std::any_of(explained->rounds.begin(), explained->rounds.end(),
                     [](const calib::criticism::search::Round& r) { return !r.possible.empty(); });
-    if (!evidence.formulas_alone && (!evidence.next || evidence.next->effect.empty()) && names_open)
+    if (!explained->named.empty() && (!evidence.next || evidence.next->effect.empty()) && names_open)
       if (auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt))
         evidence.next = *std::move(next);
   }

@@ -25,8 +25,8 @@
 ///
 /// What is named in part is no end: where no formula is open, effects that stay open beside one another are
 /// told apart; and where an effect of the library accounts for what explain() leaves, formulas are looked for
-/// once more beside it. Effects that describe a part may stand in for a law of no library: where a formula
-/// accounts for everything without them, it is the answer.
+/// once more beside it. Effects that describe a part may stand in for a law of no library: where
+/// formulas account for everything without them, their names are taken back (remaining_law.h).
 namespace mgtd::daemon::run {
 
 struct NextPoses {
@@ -41,8 +41,9 @@ struct RunEvidence {
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
   std::vector<std::string> beside{};  ///< effects of the library that the search found before that, specs
-  bool formulas_alone{false};         ///< `discovered` is of the whole residual, without what explain() names
 
+  /// They took the place of all that explain() named.
+  [[nodiscard]] bool formulas_account_for_all() const;
   [[nodiscard]] bool leaves_formulas_open() const;
 };
 

@@ -27,7 +27,7 @@ What happens outside the laboratory, {0} runs of each kind, written by
 
     blind --only real-noise --runs {0}{1} -o page.md
 
-The runs come from the simulated rig (`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT of noise, dwells of 4 and 8 s, 24 of 157 poses visited again, table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a battery beside the table. Each is fitted and explained, and told nothing.
+The runs come from the simulated rig (`tests/rig`), whose physics shares no code with the estimator: samples at 50 Hz with 0.3 nT of noise, dwells of 4 and 8 s, 24 of 157 poses visited again, table angles to 0.1 degrees, temperatures up and down by 3 degrees, a switched motor and a battery beside the table. Each is fitted and explained, and told nothing. Names that a formula takes the place of are taken back, as by `mgt explain`.
 
 - `must`. PASS: accepted, PASS and no name. no name: accepted, and no name. name: EXPLAINED by right names, or AMBIGUOUS with one among the possible. open: something is there, and no wrong name is given. set aside: accepted, no wrong name, and the disturbed poses cost the calibration less than 20 %. refuse: not accepted by fit, and BAD-DATA or refused by explain. agree: accepted and PASS, or neither.
 - `tensor`: median error of the calibrated tensor of a uniform field of 50 000 nT over all attitudes, as fitted, at 0.4 m. `over the plain rig`: median and worst of that error after explain, over the error from the same run with white noise and nothing hidden.

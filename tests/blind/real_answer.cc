@@ -12,6 +12,8 @@
 #include <ctime>
 #include <random>
 
+#include "calib/criticism/search/stand_ins.h"
+#include "calib/discovery/remaining_law.h"
 #include "calib/fit/method_choice/fit.h"
 #include "calib/fit/orientation.h"
 #include "proto/units.h"
@@ -184,7 +186,10 @@ RealAnswer answer_to(const RealRun& run, bool parameters) {
   RealAnswer out;
   const double begin_s = of_this_thread_s();
   const auto fitted = fit::method_choice::fit(run.table, {});
-  const auto explained = criticism::search::explain(run.table, {});
+  auto explained = criticism::search::explain(run.table, {});
+  if (explained && explained->finding == criticism::search::Finding::partial)
+    if (const auto law = discovery::law_instead(run.table, {.fit = {}, .checks = false}, explained->model))
+      criticism::search::take_back_stand_ins(law->instead_of, *explained);
   out.cpu_s = of_this_thread_s() - begin_s;
   out.fit_refused = !fitted;
   out.explain_refused = !explained;

@@ -36,6 +36,9 @@ struct ExplainReport {
   Finding finding{Finding::pass};
   std::vector<tests::Candidate> candidates{};  ///< of the model that was asked about, best first
   std::vector<std::string> named{};
+  /// Specs of effects that were found and are not named: formulas of no library account for everything
+  /// without them (stand_ins.h).
+  std::vector<std::string> stand_ins{};
   Finding left{Finding::pass};  ///< PASS, UNKNOWN or PARTIAL: what stands out after the last round
   std::vector<Round> rounds{};
   std::vector<tests::MapScore> maps{};       ///< of the model that was asked about

@@ -145,20 +145,28 @@ TEST(JudgeRun, ALawEndsIt) {
 TEST(JudgeRun, AFormulaThatAccountsForEverythingTakesThePlaceOfNames) {
   const PoseTable table = ten_poses();
   ExplainReport explained;
-  explained.finding = Finding::partial;
-  explained.named = {"site.step"};
+  explained.finding = Finding::unknown;
+  explained.stand_ins = {"site.step,t=0.4"};
   calib::discovery::DiscoveryReport found;
   found.finding = calib::discovery::LawFinding::law;
   found.laws.emplace_back();
   found.laws.front().formulas.resize(1);
   found.laws.front().formulas.front().formula = "t_h^2";
   found.laws.front().formulas.front().where = "site gradient";
-  const NextPoses out = next_poses(
-      {.table = table, .explained = explained, .next = {}, .discovered = found, .formulas_alone = true}, 30,
-      4);
-  EXPECT_EQ(out.judgement.found, "LAW: t_h^2 at site gradient; site.step describes a part of it");
+  NextPoses out =
+      next_poses({.table = table, .explained = explained, .next = {}, .discovered = found}, 30, 4);
+  EXPECT_EQ(out.judgement.found, "LAW: t_h^2 at site gradient; site.step,t=0.4 describes a part of it");
   EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for everything"));
   EXPECT_TRUE(out.poses.empty());
+
+  // Beside a name that keeps its place.
+  explained.finding = Finding::partial, explained.named = {"axis.cubic"};
+  out = next_poses({.table = table, .explained = explained, .next = {}, .discovered = found}, 30, 4);
+  EXPECT_EQ(
+      out.judgement.found,
+      "PARTIAL: axis.cubic; for the rest LAW: t_h^2 at site gradient; site.step,t=0.4 describes a part of "
+      "it");
+  EXPECT_THAT(out.judgement.next, HasSubstr("a formula accounts for the rest"));
 }
 
 /// A part that is named is no end while other names of it are open, whatever a formula says of the rest.
