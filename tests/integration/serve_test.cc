@@ -86,8 +86,7 @@ TEST_F(ServedRuns, AJobAnswersWhatTheTerminalAnswers) {
   EXPECT_EQ(answer({{"verb", "import"}, {"run", "poses.csv"}}).value("poses", 0), 157);
   EXPECT_TRUE(eventually([&] { return ask("GET", "/runs").find("poses.mgtrun") != std::string::npos; }));
   const json explained = answer({{"verb", "explain"}, {"run", "poses.mgtrun"}});
-  const Finished shown =
-      run({"mgt", "explain", dir_ / "poses.mgtrun", "--confusion", "--impact", "--no-law", "--json"});
+  const Finished shown = run({"mgt", "explain", dir_ / "poses.mgtrun", "--confusion", "--impact", "--json"});
   EXPECT_EQ(explained, json::parse(shown.out));
   const std::string best = explained.at("candidates").at(0).at("spec");
   const json added = answer({{"verb", "add"}, {"run", "poses.mgtrun"}, {"args", {{"effect", best}}}});

@@ -55,7 +55,7 @@ constexpr std::array kReport{kRun, kWith};
 
 constexpr std::array kVerbs{
     JobVerb{"compare", kJudged, "--poses --json"},
-    JobVerb{"explain", kJudged, "--confusion --impact --no-law --json"},
+    JobVerb{"explain", kJudged, "--confusion --impact --json"},
     JobVerb{"fit", kJudged, "--json"},
     JobVerb{"why", kOfOne, "--poses --json"},
     JobVerb{"discover", kJudged, "--json"},

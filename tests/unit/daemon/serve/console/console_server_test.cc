@@ -147,7 +147,7 @@ TEST_F(ConsoleServerWithRuns, ComputesForWhoHasTheToken) {
     return wait(peer, R"("state":)") && peer.count(R"("state":"done")") == 1;
   }));
   ask(get("/jobs/1/result", bearer()),
-      "explain " + (dir_ / "a.csv") + " --confusion --impact --no-law --json");
+      "explain " + (dir_ / "a.csv") + " --confusion --impact --json");
   ask(get("/jobs/9", bearer()), "404 Not Found");
   ask(job("POST", "/jobs", R"({"verb":"explain","run":"../a.csv"})", bearer()), "404 Not Found");
   ask(job("POST", "/jobs", R"({"verb":"undo","run":"a.csv"})", bearer()), "keeps no model");

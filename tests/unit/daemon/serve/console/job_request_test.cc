@@ -30,7 +30,7 @@ std::string refusal(const std::string& body) {
 
 TEST(JobRequest, IsACommandOfMgt) {
   EXPECT_THAT(words(R"({"verb":"explain","run":"a.mgtrun"})"),
-              ElementsAre("explain", "/runs/a.mgtrun", "--confusion", "--impact", "--no-law", "--json"));
+              ElementsAre("explain", "/runs/a.mgtrun", "--confusion", "--impact", "--json"));
   EXPECT_THAT(
       words(
           R"({"verb":"add","run":"a.mgtrun","args":{"effect":"axis.cubic@s3.z","try":true,"force":false}})"),
