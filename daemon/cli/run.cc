@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "calib/poses/pose_list.h"
@@ -55,8 +57,13 @@ bool answer(const Session& session, serve::ControlClient& client, const Operator
   while (!interrupted()) {
     fmt::print(stderr, "{}", question(prompt));
     std::string line;
+    errno = 0;
     const bool answered = !session.json && std::getline(std::cin, line);
     if (interrupted()) return true;
+    if (!answered && errno == EINTR) {  // a signal is not the end of the input
+      std::cin.clear(), std::clearerr(stdin);
+      continue;
+    }
     if (!answered) {
       fmt::print(stderr, "\nno more input here; answer from any terminal with: mgt run {}\n",
                  prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
