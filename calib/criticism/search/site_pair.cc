@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -44,10 +45,19 @@ Eigen::Index coefficients_of(const std::vector<effects::EffectPtr>& effects) {
   return out;
 }
 
+/// Where the search for places is linear: a state of the model that was asked about.
+struct Point {
+  const fit::joint::JointProblem& problem;
+  const fit::joint::JointState& state;
+  tests::Residual residual;
+
+  Point(const fit::joint::JointProblem& p, const fit::joint::JointState& s)
+      : problem(p), state(s), residual(p, s, tests::pose_correlation(p, s)) {}
+};
+
 /// Orthonormal columns of an effect, projected as the residual is.
-Eigen::MatrixXd columns_of(const fit::joint::JointFit& fit, const tests::Residual& residual,
-                           const effects::EffectPtr& effect) {
-  const tests::Signature s(residual, tests::effect_source(fit.problem, fit.state, effect));
+Eigen::MatrixXd columns_of(const Point& point, const effects::EffectPtr& effect) {
+  const tests::Signature s(point.residual, tests::effect_source(point.problem, point.state, effect));
   const auto n = static_cast<Eigen::Index>(effect->coefficients().size());
   return s.times(tests::orthonormal_combinations(
       s, tests::Hypothesis{.combine = Eigen::MatrixXd::Identity(n, n), .names = {}}));
@@ -55,22 +65,22 @@ Eigen::MatrixXd columns_of(const fit::joint::JointFit& fit, const tests::Residua
 
 /// The two effects of a pair, dipoles at the places that fit best; empty where the run cannot test them.
 std::optional<SitePair> placed(const std::array<std::string_view, 2>& names, const EffectSearch& search,
-                               const fit::joint::JointFit& base, const tests::Residual& residual) {
+                               const Point& point) {
   const auto dipoles = static_cast<int>(std::count(names.begin(), names.end(), kDipole));
   SitePair out;
-  Eigen::MatrixXd beside(residual.value().size(), 0);
+  Eigen::MatrixXd beside(point.residual.value().size(), 0);
   for (const std::string_view name : names) {
     const tests::CandidateEffect* const family = candidate(search, name);
     if (family == nullptr) return std::nullopt;
     if (name == kDipole) continue;
     out.effects.push_back(family->variants.front());
-    if (dipoles > 0) beside = columns_of(base, residual, out.effects.back());
+    if (dipoles > 0) beside = columns_of(point, out.effects.back());
   }
   Eigen::VectorXd of_dipoles(0);
   if (dipoles > 0) {
     const tests::CandidateEffect& family = *candidate(search, kDipole);
     auto found = tests::find_dipoles(
-        base.problem, base.state, residual,
+        point.problem, point.state, point.residual,
         [&](const Eigen::Vector3d& place_S_m) { return family.dipole_at(place_S_m, std::nullopt); }, dipoles,
         beside);
     if (!found) return std::nullopt;
@@ -102,14 +112,15 @@ double cost_of(const fit::joint::JointFit& fit, const fit::joint::JointFit& base
 }
 
 /// Fits the model with a pair, from where the search for its places ended.
-bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base, SitePair& pair) {
+bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
+              const fit::joint::JointState& from, SitePair& pair) {
   fit::joint::JointOptions options = search.joint;
   options.effects = search.given;
   options.effects.insert(options.effects.end(), pair.effects.begin(), pair.effects.end());
   options.noise_inflation = base.noise_inflation;
-  fit::joint::JointState start = base.state;
-  start.coefficients.resize(base.state.coefficients.size() + pair.start.size());
-  start.coefficients << base.state.coefficients, pair.start;
+  fit::joint::JointState start = from;
+  start.coefficients.resize(from.coefficients.size() + pair.start.size());
+  start.coefficients << from.coefficients, pair.start;
   auto fit = fit::joint::fit_joint_at_size(search.table, options, &start);
   if (!fit) return false;
   pair.cost = cost_of(*fit, base, coefficients_of(options.effects));
@@ -117,15 +128,48 @@ bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base, Site
   return true;
 }
 
-/// Pairs that can be fitted, best first.
-std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::JointFit& base) {
-  const tests::Residual residual(base.problem, base.state, tests::pose_correlation(base.problem, base.state));
-  std::vector<SitePair> out;
+/// Pairs that can be fitted with places searched about one point, best first; of two with the same names the
+/// better one.
+void add_pairs(const EffectSearch& search, const fit::joint::JointFit& base,
+               const fit::joint::JointState& about, std::vector<SitePair>& out) {
+  const Point point(base.problem, about);
   for (const auto& names : kPairs) {
-    auto pair = placed(names, search, base, residual);
-    if (pair && fit_with(search, base, *pair)) out.push_back(*std::move(pair));
+    auto pair = placed(names, search, point);
+    if (pair && fit_with(search, base, about, *pair)) out.push_back(*std::move(pair));
   }
-  std::sort(out.begin(), out.end(), [](const SitePair& a, const SitePair& b) { return a.cost < b.cost; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const SitePair& a, const SitePair& b) { return a.cost < b.cost; });
+  std::set<std::multiset<std::string>> seen;
+  std::erase_if(out, [&](const SitePair& pair) {
+    std::multiset<std::string> names;
+    for (const effects::EffectPtr& effect : pair.effects) names.emplace(effect->name());
+    return !seen.insert(std::move(names)).second;
+  });
+}
+
+/// Of a fit with more effects, without their coefficients.
+fit::joint::JointState given_state(const fit::joint::JointFit& fit, const fit::joint::JointFit& base) {
+  fit::joint::JointState out = fit.state;
+  out.coefficients.conservativeResize(base.state.coefficients.size());
+  return out;
+}
+
+/// Best first. Strong sources bend the fit without them, and places that are searched about it are wrong by
+/// more than the noise: so they are searched again about the best fit that is known, as long as that helps.
+std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::JointFit& base,
+                               double of_rounds) {
+  constexpr int kMostSearches = 4;
+  std::vector<SitePair> out;
+  add_pairs(search, base, base.state, out);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 1; i < kMostSearches; ++i) {
+    const bool rounds = out.empty() || of_rounds < out.front().cost;
+    const double cost = rounds ? of_rounds : out.front().cost;
+    if (cost > least - kClearly) break;
+    least = cost;
+    const fit::joint::JointFit& best = rounds ? search.fit : *out.front().fit;
+    add_pairs(search, base, given_state(best, base), out);
+  }
   return out;
 }
 
@@ -220,8 +264,8 @@ bool is_site_pair(const std::vector<effects::EffectPtr>& effects) {
 
 bool site_pair_instead(EffectSearch& search, ExplainReport& report) {
   const fit::joint::JointFit& base = *report.fit;
-  const std::vector<SitePair> pairs = pairs_of(search, base);
   const double of_rounds = cost_of(search.fit, base, coefficients_of(search.joint.effects));
+  const std::vector<SitePair> pairs = pairs_of(search, base, of_rounds);
   if (pairs.empty() || pairs.front().cost > of_rounds - kClearly) {
     if (is_site_pair(effects_of(report.rounds)) && !search.criticism.rejects())
       exclude_pairs_out_of_reach(pairs, of_rounds, report);

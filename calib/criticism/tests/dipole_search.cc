@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kNearest_m = 0.3, kFarthest_m = 3;
 constexpr std::array kDistances_m{0.6, 1.5};
+/// Beside a gradient, which takes up a dipole's own, a dipole is known by its curvature alone, and more
+/// places look alike.
 constexpr std::size_t kStarts = 3, kPairStarts = 8;
 /// Cosine of two directions from which a better start counts as the same.
 constexpr double kSame = 0.8;
@@ -131,7 +133,7 @@ class DipoleSearch {
   [[nodiscard]] std::vector<Trial> single_starts() const {
     std::vector<Trial> all;
     for (const Eigen::Vector3d& place_S_m : grid()) all.push_back(at({place_S_m}));
-    return best_apart(std::move(all), kStarts);
+    return best_apart(std::move(all), beside_.cols() == 0 ? kStarts : kPairStarts);
   }
 
   [[nodiscard]] std::vector<Trial> pair_starts() const {
