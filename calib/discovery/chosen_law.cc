@@ -156,7 +156,7 @@ Result<ChosenLaw> chosen_law(const Workbench& bench, const ChannelSums& sums, co
   auto head = fitted_law(family.columns(round.head.inner), round.head.place, bench.inputs, sums);
   if (!head) return tl::unexpected(head.error());
   out.head = *std::move(head);
-  out.law.d = out.head.d();
+  out.law.d = out.head.d(), out.score = round.head.score;
   out.covariates = family.covariates;
   for (std::size_t i = 0; i < fitted.size(); ++i) {
     if (!fitted[i] || !(fitted[i]->place == out.head.place)) continue;

@@ -13,6 +13,7 @@ namespace mgtd::calib::discovery {
 struct ChosenLaw {
   FoundLaw law;
   FittedLaw head;              ///< the formula that leads
+  double score{0};             ///< of it, as law_ranking.h gives it
   std::vector<FittedLaw> set;  ///< formulas of the 99 % set at the place of the head, the head first
   std::vector<std::string> covariates{};  ///< of the head, as formulas name them
   std::vector<FittedLaw> alike{};         ///< of the set, those of the same covariates

@@ -68,10 +68,17 @@ struct Share {
   double P{0};
 };
 
+/// An effect of the library at a place.
+struct LibraryEffect {
+  std::string name{}, where{};
+};
+
 /// One law and what else it could be.
 struct FoundLaw {
   std::vector<FoundFormula> formulas{};  ///< the 99 % set, best first; the first is in the model afterwards
-  std::size_t more{0};                   ///< formulas of the set that are not among these
+  /// With a hundredth of the evidence of the best formula or more, beside the other laws.
+  std::vector<LibraryEffect> as_well{};
+  std::size_t more{0};  ///< formulas of the set that are not among these
   std::vector<Share> covariates{}, where{};
   double log10_p{0};  ///< of the whole search
   bool stands_out{false};

@@ -28,43 +28,19 @@ double log10_p_of(const Tried& t, const criticism::tests::NoiseReference& noise,
                   noise.log10_p(t.S, t.k, std::min(axes, channels)) + std::log10(t.place.alike(channels)));
 }
 
-/// The library's effects, place by place; those that are a formula already only lend it their name.
+/// The library's effects stand in the ranking; those that are a formula already only lend it their name.
 void add_library(const Workbench& bench, std::vector<RankedLaw>& ranked) {
   std::vector<RankedLaw> more;
-  for (const criticism::tests::ScoredFamily& family : bench.library) {
-    const auto& hypotheses = family.candidate_effect->hypotheses;
-    const auto values = static_cast<double>(std::max<std::size_t>(1, family.signatures.size()));
-    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-      RankedLaw law{.kind = RankedLaw::Kind::library,
-                    .effect = family.candidate_effect->name,
-                    .place = {},
-                    .where = hypotheses[h].where,
-                    .symbols = kLibrarySymbols};
-      double best = 0, sum = 0;
-      for (const criticism::tests::Score& score : family.scores) {
-        if (score.hypothesis != h) continue;
-        const double q = price_paid(score.S, score.k);
-        if (sum == 0 || q > best) {
-          sum = sum * std::exp((best - q) / 2) + 1;
-          best = q, law.S = score.S, law.k = score.k;
-        } else {
-          sum += std::exp((q - best) / 2);
-        }
-      }
-      if (sum == 0) continue;
-      const auto same = std::find_if(ranked.begin(), ranked.end(), [&](const RankedLaw& formula) {
-        return formula.where == law.where && formula.k == law.k && formula.effect.empty() &&
-               std::abs(formula.S - law.S) < kSameFall + std::min(kSameShare * law.S, kSameAtMost) &&
-               law.S > 2 * law.k + 8;
-      });
-      if (same != ranked.end()) {
-        same->effect = law.effect;
-        continue;
-      }
-      law.score = best + 2 * std::log(sum / values) - 2 * std::log(hypotheses[h].alike) -
-                  2 * kSymbolPrice * law.symbols;
+  for (RankedLaw& law : rank_library(bench.library)) {
+    const auto same = std::find_if(ranked.begin(), ranked.end(), [&](const RankedLaw& formula) {
+      return formula.where == law.where && formula.k == law.k && formula.effect.empty() &&
+             std::abs(formula.S - law.S) < kSameFall + std::min(kSameShare * law.S, kSameAtMost) &&
+             law.S > 2 * law.k + 8;
+    });
+    if (same == ranked.end())
       more.push_back(std::move(law));
-    }
+    else
+      same->effect = law.effect;
   }
   ranked.insert(ranked.end(), more.begin(), more.end());
 }
@@ -132,6 +108,37 @@ void lower_to(const LawSearch::Largest& of_kind, const criticism::tests::NoiseRe
 double limit_log10_p(int looks) { return std::log10(kFalseDiscovery / looks); }
 
 bool stands_out(double log10_p, int looks) { return log10_p < limit_log10_p(looks); }
+
+std::vector<RankedLaw> rank_library(const std::vector<criticism::tests::ScoredFamily>& library) {
+  std::vector<RankedLaw> out;
+  for (const criticism::tests::ScoredFamily& family : library) {
+    const auto& hypotheses = family.candidate_effect->hypotheses;
+    const auto values = static_cast<double>(std::max<std::size_t>(1, family.signatures.size()));
+    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+      RankedLaw law{.kind = RankedLaw::Kind::library,
+                    .effect = family.candidate_effect->name,
+                    .place = {},
+                    .where = hypotheses[h].where,
+                    .symbols = kLibrarySymbols};
+      double best = 0, sum = 0;
+      for (const criticism::tests::Score& score : family.scores) {
+        if (score.hypothesis != h) continue;
+        const double q = price_paid(score.S, score.k);
+        if (sum == 0 || q > best) {
+          sum = sum * std::exp((best - q) / 2) + 1;
+          best = q, law.S = score.S, law.k = score.k;
+        } else {
+          sum += std::exp((q - best) / 2);
+        }
+      }
+      if (sum == 0) continue;
+      law.score = best + 2 * std::log(sum / values) - 2 * std::log(hypotheses[h].alike) -
+                  2 * kSymbolPrice * law.symbols;
+      out.push_back(std::move(law));
+    }
+  }
+  return out;
+}
 
 Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library) {
   if (bench.problem.stop.stop_requested()) return fail(ErrorCode::state, "the search was stopped");

@@ -44,6 +44,8 @@ struct LawRound {
 
 /// Refuses inputs that no formula can be tried on, and ends soon after the fit's stop token says so.
 [[nodiscard]] Result<LawRound> law_round(const Workbench& bench, const ChannelSums& sums, bool with_library);
+/// Effects of the library, place by place, in the order of the library; P is zero yet.
+[[nodiscard]] std::vector<RankedLaw> rank_library(const std::vector<criticism::tests::ScoredFamily>& library);
 /// log10 of the best question of draws of noise, by draw.
 [[nodiscard]] std::vector<double> best_of_noise(const LawSearch& search, const ChannelSums& sums,
                                                 const criticism::tests::NoiseReference& noise, int draws,

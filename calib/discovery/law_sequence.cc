@@ -46,6 +46,20 @@ Result<bool> sweep(const Workbench& bench, const ChannelSums& bare, const Eigen:
   return any;
 }
 
+/// Says of each law which effects of the library describe it as well.
+void compare_with_library(const Workbench& bench, const Eigen::MatrixXd& of_gradient,
+                          std::vector<ChosenLaw>& laws) {
+  const double as_well = 2 * std::log(100.0);
+  for (ChosenLaw& law : laws) {
+    std::vector<const FittedLaw*> others;
+    for (const ChosenLaw& other : laws)
+      if (&other != &law) others.push_back(&other.head);
+    for (const RankedLaw& effect :
+         rank_library(others.empty() ? bench.library : library_beside(bench, others, of_gradient)))
+      if (effect.score > law.score - as_well) law.law.as_well.push_back({effect.effect, effect.where});
+  }
+}
+
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 /// Evidence of the first m laws, alone and with an offset that walks or jumps beside them.
@@ -144,6 +158,7 @@ Result<LawSequence> law_sequence(const Workbench& bench, const ChannelSums& bare
     out.laws.resize(std::max<std::size_t>(1, with_random));
   const auto changed = sweep(bench, bare, of_gradient, questions, out.laws);
   if (!changed) return tl::unexpected(changed.error());
+  if (out.laws.front().law.stands_out) compare_with_library(bench, of_gradient, out.laws);
   for (std::size_t i = 0; i < out.laws.size(); ++i) hold_against_random(models, i, out.laws[i].law);
   if (*changed || out.laws.size() != found) {
     out.left = bare;

@@ -10,8 +10,9 @@
 /// remaining_law() looks for the formula of what the effects of the library leave unexplained.
 ///
 /// Effects that describe a part may stand in for a law of no library. So it is looked for first without them:
-/// where formulas account for everything, an effect keeps its name only if, with it in the model, there is
-/// one formula less. Where formulas alone leave anything, they are looked for beside all effects.
+/// where formulas account for everything, an effect keeps its name only if one of these laws is that effect,
+/// as far as their evidence can tell, and if there are fewer formulas with it in the model. Where formulas
+/// alone leave anything, they are looked for beside all effects.
 namespace mgtd::calib::discovery {
 
 struct RemainingLaw {

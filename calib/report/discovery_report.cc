@@ -87,7 +87,9 @@ json shares_json(const std::vector<discovery::Share>& shares) {
 }
 
 json law_json(const FoundLaw& law) {
-  json formulas = json::array();
+  json formulas = json::array(), as_well = json::array();
+  for (const discovery::LibraryEffect& effect : law.as_well)
+    as_well.push_back({{"effect", effect.name}, {"where", effect.where}});
   for (std::size_t i = 0; i < law.formulas.size(); ++i)
     formulas.push_back(formula_json(law.formulas[i], law, i == 0));
   json out{{"log10_p_search", law.log10_p},
@@ -97,6 +99,7 @@ json law_json(const FoundLaw& law) {
            {"where", shares_json(law.where)},
            {"formulas", std::move(formulas)},
            {"formulas_more", law.more},
+           {"library_as_well", std::move(as_well)},
            {"stochastic",
             {{"walk_P", law.walk_P},
              {"jumps_P", law.jumps_P},

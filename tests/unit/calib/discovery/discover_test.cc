@@ -152,6 +152,28 @@ TEST(Discover, NamesTwoLawsOnOneAxis) {
   EXPECT_EQ(covariates["azimuth_deg"], 1);
 }
 
+/// A third power is in the library, a fourth is not; whichever of the two laws comes second.
+TEST(Discover, SaysOfEachLawWhichEffectOfTheLibraryDescribesItAsWell) {
+  for (const double third_nT : {3.0, 0.8}) {
+    const DiscoveryReport r = found_in(
+        [=](const Pose&, int i, int a, const Eigen::Vector3d& v) {
+          if (i == 1 && a == 2) return 2 * std::pow(v[a] / 50'000, 4);
+          return i == 0 && a == 0 ? third_nT * std::pow(v[a] / 50'000, 3) : 0.0;
+        },
+        12);
+    ASSERT_EQ(r.laws.size(), 2U) << report::to_text(r, "run.csv");
+    for (const FoundLaw& law : r.laws) {
+      if (law.formulas.front().where == "s1.x") {
+        ASSERT_EQ(law.as_well.size(), 1U);
+        EXPECT_EQ(law.as_well.front().name, "axis.cubic");
+        EXPECT_EQ(law.as_well.front().where, "s1.x");
+      } else {
+        EXPECT_TRUE(law.as_well.empty()) << law.as_well.front().name;
+      }
+    }
+  }
+}
+
 /// A gradient of the site that swings, in the frame of the site: what each sensor reads of it turns with the
 /// table.
 TEST(Discover, NamesAnOscillationOfTheGradient) {
