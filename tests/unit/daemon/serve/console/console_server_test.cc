@@ -146,8 +146,7 @@ TEST_F(ConsoleServerWithRuns, ComputesForWhoHasTheToken) {
     peer.send(get("/jobs/1", bearer()));
     return wait(peer, R"("state":)") && peer.count(R"("state":"done")") == 1;
   }));
-  ask(get("/jobs/1/result", bearer()),
-      "explain " + (dir_ / "a.csv") + " --confusion --impact --json");
+  ask(get("/jobs/1/result", bearer()), "explain " + (dir_ / "a.csv") + " --confusion --impact --json");
   ask(get("/jobs/9", bearer()), "404 Not Found");
   ask(job("POST", "/jobs", R"({"verb":"explain","run":"../a.csv"})", bearer()), "404 Not Found");
   ask(job("POST", "/jobs", R"({"verb":"undo","run":"a.csv"})", bearer()), "keeps no model");
