@@ -2,10 +2,10 @@
 #include "calib/discovery/remaining_law.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "calib/effects/effect_spec.h"
+#include "calib/effects/library/effect_family.h"
 
 namespace mgtd::calib::discovery {
 namespace {
@@ -33,11 +33,26 @@ bool is_a_law(const effects::Effect& effect, const DiscoveryReport& report) {
   });
 }
 
-/// With more effects in the model, formulas still account for everything, and there are fewer of them.
-bool takes_the_place_of_some(const Result<DiscoveryReport>& with, const DiscoveryReport& without) {
-  if (!with) return false;
-  if (with->finding == LawFinding::pass) return true;
-  return with->accounts_for_everything() && laws_of(*with) < laws_of(without);
+/// Whether the evidence of laws can be held against that of an effect: the search has no places of dipoles,
+/// no instants of steps and no formulas of a user's own in its library.
+bool can_be_compared(const effects::Effect& effect) {
+  const std::string_view name = effect.name();
+  return effects::library::find_family(name) != nullptr && name != "site.dipole" && name != "site.step";
+}
+
+std::vector<std::string> specs_of(const Effects& model) {
+  std::vector<std::string> out;
+  for (const effects::EffectPtr& effect : model) out.push_back(effect->spec());
+  return out;
+}
+
+/// What a search has added to a model; what it replaced is not in `described` any more.
+Effects added(const Effects& described, const Effects& given) {
+  const std::vector<std::string> before = specs_of(given);
+  Effects out;
+  for (const effects::EffectPtr& effect : described)
+    if (std::find(before.begin(), before.end(), effect->spec()) == before.end()) out.push_back(effect);
+  return out;
 }
 
 }  // namespace
@@ -45,20 +60,25 @@ bool takes_the_place_of_some(const Result<DiscoveryReport>& with, const Discover
 std::optional<RemainingLaw> law_instead(const PoseTable& table, const DiscoverOptions& options,
                                         const Effects& described) {
   const Effects& given = options.fit.effects;
-  if (described.size() <= given.size()) return std::nullopt;
+  const Effects named = added(described, given);
+  if (named.empty() || named.size() + given.size() != described.size()) return std::nullopt;
   RemainingLaw out{.found = discover_beside(table, options, given), .model = given};
   if (!out.found || !out.found->accounts_for_everything()) return std::nullopt;
-  Effects more = given, stand_ins;
-  for (const effects::EffectPtr& effect : std::span(described).subspan(given.size()))
-    (is_a_law(*effect, *out.found) ? more : stand_ins).push_back(effect);
-  if (more.size() > given.size()) {
-    if (auto with = discover_beside(table, options, more); takes_the_place_of_some(with, *out.found))
-      out.found = std::move(with), out.model = std::move(more);
-    else
-      stand_ins.assign(described.begin() + static_cast<std::ptrdiff_t>(given.size()), described.end());
+  for (const effects::EffectPtr& effect : named) {
+    if (!can_be_compared(*effect) || is_a_law(*effect, *out.found)) {
+      Effects more = out.model;
+      more.push_back(effect);
+      auto with = discover_beside(table, options, more);
+      // Nothing is left: then what else was found is not needed, and no formula says so.
+      if (!with || with->finding == LawFinding::pass) return std::nullopt;
+      if (with->accounts_for_everything() && laws_of(*with) < laws_of(*out.found)) {
+        out.found = std::move(with), out.model = std::move(more);
+        continue;
+      }
+    }
+    out.instead_of.push_back(effect->spec());
   }
-  for (const effects::EffectPtr& effect : stand_ins) out.instead_of.push_back(effect->spec());
-  return out.instead_of.empty() ? std::nullopt : std::optional(std::move(out));
+  return out;
 }
 
 RemainingLaw remaining_law(const PoseTable& table, const DiscoverOptions& options, const Effects& described) {

@@ -102,7 +102,9 @@ std::string round_text(const criticism::search::Round& round, const fit::joint::
 /// Where what was found is the lesser part of what is there.
 std::string lesser_part_text(const criticism::search::ExplainReport& r) {
   constexpr double kHalf = 0.5;
-  if (r.finding != criticism::search::Finding::partial || !r.noise.known || r.rounds.empty()) return {};
+  if (r.finding != criticism::search::Finding::partial || !r.stand_ins.empty() || !r.noise.known ||
+      r.rounds.empty())
+    return {};
   const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - r.noise_nT * r.noise_nT; };
   const double before = beyond(r.rounds.front().rms_before_nT), after = beyond(r.rounds.back().rms_after_nT);
   if (!(before > 0) || after < kHalf * before) return {};
@@ -110,6 +112,11 @@ std::string lesser_part_text(const criticism::search::ExplainReport& r) {
       "What is named below takes away only {:.0f} % of what is beyond the noise: most of it is something "
       "else.",
       100 * std::max(0.0, 1 - after / before));
+}
+
+bool is_named(const criticism::search::Round& round, const criticism::search::ExplainReport& r) {
+  return r.stand_ins.empty() ||
+         std::find(r.named.begin(), r.named.end(), round.added.effect) != r.named.end();
 }
 
 std::string alternatives_text(const criticism::search::Round& round) {
@@ -184,8 +191,8 @@ std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
 /// Names that a law of no library takes the place of.
 std::string stand_ins_text(const criticism::search::ExplainReport& r) {
   const bool one = r.stand_ins.size() == 1;
-  return fmt::format("{} {} only a part: a formula accounts for everything without {}.",
-                     fmt::join(r.stand_ins, ", "), one ? "describes" : "describe", one ? "it" : "them");
+  return fmt::format("{} {} not named: formulas account for everything without {}.",
+                     fmt::join(r.stand_ins, ", "), one ? "is" : "are", one ? "it" : "them");
 }
 
 }  // namespace
@@ -216,7 +223,8 @@ std::string sentence(const criticism::search::ExplainReport& r) {
   const bool recording = before != nullptr && fit::joint::is_recording(before->problem);
   for (const criticism::search::Round& round : r.rounds) {
     parts.push_back(round_text(round, before));
-    if (lesser_part.empty() || !round.possible.empty()) parts.push_back(alternatives_text(round));
+    if (is_named(round, r) && (lesser_part.empty() || !round.possible.empty()))
+      parts.push_back(alternatives_text(round));
     before = round.fit.get();
   }
   if (!r.stand_ins.empty()) parts.push_back(stand_ins_text(r));

@@ -33,7 +33,8 @@ constexpr const char* kExplainHelp =
     "and nothing was found).\n\n"
     "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula, first without\n"
     "what was named: a name that formulas account for is taken back, and where none remains the verdict is\n"
-    "UNKNOWN. Else it looks beside what was named. --no-law leaves that out.\n\n"
+    "UNKNOWN. Where formulas alone leave something, it looks beside what was named. --no-law leaves that\n"
+    "out.\n\n"
     "  mgt explain run.mgtrun\n"
     "  mgt explain run.mgtrun --with site.gradient     what is missing beside a gradient of the site\n\n"
     "Exit code 0: PASS. 1: any other verdict.";

@@ -76,7 +76,7 @@ int run_improve(const Session& session, const ImproveArguments& args) {
                        ? law_of_the_rest(source->table, *options, whole->effects, improved->finding)
                        : std::nullopt;
   if (law && !law->instead_of.empty() && !args.output.empty())
-    fmt::print(stderr, "{} holds {}: a formula accounts for everything without it\n", args.output,
+    fmt::print(stderr, "{} holds {}: formulas account for everything without that\n", args.output,
                fmt::join(law->instead_of, ", "));
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);

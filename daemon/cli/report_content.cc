@@ -144,7 +144,7 @@ Result<void> show_law(const calib::discovery::RemainingLaw& law, ReportContent& 
   c.laws = *std::move(pages);
   std::vector<std::string> specs;
   for (const calib::effects::EffectPtr& effect : law.model) specs.push_back(effect->spec());
-  c.laws_note = fmt::format("Searched for this report beside {}; mgt discover --keep keeps it in the run.",
+  c.laws_note = fmt::format("Searched for this report beside {}; mgt explain says how to keep it.",
                             searched_beside(specs));
   return {};
 }

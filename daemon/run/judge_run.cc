@@ -143,6 +143,12 @@ bool discover_instead(calib::fit::FitOptions& options, ExplainReport& explained,
   return true;
 }
 
+/// next_after() asks about the first round.
+bool first_is_named(const ExplainReport& r) {
+  return !r.rounds.empty() &&
+         std::find(r.named.begin(), r.named.end(), r.rounds.front().added.effect) != r.named.end();
+}
+
 }  // namespace
 
 bool RunEvidence::formulas_account_for_all() const {
@@ -216,7 +222,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
     const bool names_open =
         std::any_of(explained->rounds.begin(), explained->rounds.end(),
                     [](const calib::criticism::search::Round& r) { return !r.possible.empty(); });
-    if (!explained->named.empty() && (!evidence.next || evidence.next->effect.empty()) && names_open)
+    if (first_is_named(*explained) && (!evidence.next || evidence.next->effect.empty()) && names_open)
       if (auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt))
         evidence.next = *std::move(next);
   }

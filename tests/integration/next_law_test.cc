@@ -120,8 +120,7 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
       EXPECT_THAT(
           text.out,
           AllOf(::testing::StartsWith("UNKNOWN\n"),
-                HasSubstr("axis.quadratic@s3.z describes only a part: a formula accounts for everything "
-                          "without it.")));
+                HasSubstr("axis.quadratic@s3.z is not named: formulas account for everything without it.")));
     EXPECT_THAT(text.out, Not(HasSubstr("shows most of it"))) << "what is left was told one sentence before";
     EXPECT_THAT(run({"mgt", command, table, "--no-law"}).out, Not(HasSubstr("A formula for")));
   }

@@ -16,11 +16,16 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
 void take_back_stand_ins(const std::vector<std::string>& stand_ins, ExplainReport& report) {
   if (stand_ins.empty()) return;
   const std::string first = report.named.empty() ? "" : report.named.front();
-  const std::size_t given = report.fit ? report.fit->problem.effects.size() : 0;
-  std::set<std::string> kept;
-  for (std::size_t i = given; i < report.model.size(); ++i)
-    if (!holds(stand_ins, report.model[i]->spec())) kept.emplace(report.model[i]->name());
-  std::erase_if(report.named, [&](const std::string& name) { return !kept.contains(name); });
+  std::vector<std::string> given;
+  if (report.fit)
+    for (const effects::EffectPtr& effect : report.fit->problem.effects) given.push_back(effect->spec());
+  std::set<std::string> taken_back, kept;
+  for (const effects::EffectPtr& effect : report.model) {
+    if (holds(given, effect->spec())) continue;
+    (holds(stand_ins, effect->spec()) ? taken_back : kept).emplace(effect->name());
+  }
+  std::erase_if(report.named,
+                [&](const std::string& name) { return taken_back.contains(name) && !kept.contains(name); });
   if (report.named.empty() || report.named.front() != first) report.next.clear();
   report.stand_ins = stand_ins;
   report.finding = report.named.empty() ? Finding::unknown : Finding::partial;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNearest_m = 0.3, kFarthest_m = 3;
 constexpr std::array kDistances_m{0.6, 1.5};
-/// Beside a gradient, which takes up a dipole's own, a dipole is known by its curvature alone, and more
-/// places look alike.
+/// Beside a gradient of the site, which takes up the gradient of a dipole, the dipole is known by its
+/// curvature alone, and more places look alike.
 constexpr std::size_t kStarts = 3, kPairStarts = 8;
 /// Cosine of two directions from which a better start counts as the same.
 constexpr double kSame = 0.8;

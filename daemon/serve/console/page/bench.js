@@ -185,7 +185,7 @@ export class Bench {
     fill(by("verdict"), make("p", {}, make("b", { class: `word ${kColour[explain.verdict] ?? ""}`, "data-key": "verdict" }, explain.verdict),
                              " residual ", number(explain.residual_nT, "residual_nT"), " nT, noise ", number(explain.noise_nT, "noise_nT"), " nT: ",
                              make("b", {}, `${sig(times, 3)} times`), make("span", { class: "track ratio", title: "1 to 1000 times the noise, lines at 10 and 100" }, ratio)),
-         make("p", { "data-key": "text" }, explain.text), explain.notes.filter((n) => !explain.text.includes(n.slice(0, 60))).map((n) => make("p", { class: "caption" }, n)),
+         make("p", { "data-key": "text" }, explain.text), explain.law?.instead_of?.length ? make("p", { "data-key": "law" }, explain.law.text.split("\n")[0]) : null, explain.notes.filter((n) => !explain.text.includes(n.slice(0, 60))).map((n) => make("p", { class: "caption" }, n)),
          (explain.chosen_in_doubt ?? []).map((d) => make("p", { class: "warn" }, d.text ?? `${d.spec}: ${d.alternatives?.join(", ") ?? ""}`)));
     this.#drawCandidates();
     this.#map = null;

@@ -69,6 +69,11 @@ TEST(RemainingLaw, AnEffectThatLeavesNothingKeepsItsName) {
   EXPECT_EQ(law.found->finding, LawFinding::pass);
 }
 
+/// A formula that is this effect says nothing of the others.
+TEST(RemainingLaw, WhereOneEffectLeavesNothingNoFormulaTakesThePlaceOfTheOthers) {
+  EXPECT_FALSE(law_instead(powers(0, 3, 7), kQuick, model({"axis.cubic@s1.x", "axis.quadratic@s2.z"})));
+}
+
 TEST(RemainingLaw, TakesThePlaceOfNothingWhereNothingWasAdded) {
   DiscoverOptions options = kQuick;
   options.fit.effects = model({"axis.quadratic@s2.z"});

@@ -34,9 +34,10 @@ TEST(StandIns, AreNotNamed) {
   EXPECT_THAT(report.stand_ins, ElementsAre("axis.quadratic@s3.z"));
   EXPECT_EQ(report.next.size(), 1U) << "it is about the first name, which stays";
   EXPECT_EQ(report.model.size(), 2U);
-  EXPECT_THAT(report::to_text(report), AllOf(StartsWith("PARTIAL: axis.cubic\n"),
-                                             HasSubstr("axis.quadratic@s3.z describes only a part: a formula "
-                                                       "accounts for everything without it.")));
+  EXPECT_THAT(
+      report::to_text(report),
+      AllOf(StartsWith("PARTIAL: axis.cubic\n"),
+            HasSubstr("axis.quadratic@s3.z is not named: formulas account for everything without it.")));
 }
 
 TEST(StandIns, WithoutANameTheVerdictIsUnknown) {
@@ -47,8 +48,7 @@ TEST(StandIns, WithoutANameTheVerdictIsUnknown) {
   EXPECT_THAT(report.next, IsEmpty());
   EXPECT_THAT(report::to_text(report),
               AllOf(StartsWith("UNKNOWN\n"),
-                    HasSubstr("describe only a part: a formula accounts for everything "
-                              "without them."),
+                    HasSubstr("are not named: formulas account for everything without them."),
                     Not(HasSubstr("no effect of the library looks like it"))));
 }
 
@@ -58,6 +58,15 @@ TEST(StandIns, ANameThatActsElsewhereTooStays) {
   report.model.push_back(effects::library::make_effect("axis.quadratic@s4.x", 4).value());
   take_back_stand_ins({"axis.quadratic@s3.z"}, report);
   EXPECT_THAT(report.named, ElementsAre("axis.cubic", "axis.quadratic"));
+}
+
+/// As after a round whose effect took the place of one that was given.
+TEST(StandIns, ANameThatIsNoStandInStaysWhereverItsEffectStands) {
+  ExplainReport report = two_found();
+  report.named.emplace_back("axis.settling");
+  take_back_stand_ins({"axis.cubic@s1.x", "axis.quadratic@s3.z"}, report);
+  EXPECT_THAT(report.named, ElementsAre("axis.settling"));
+  EXPECT_EQ(report.finding, Finding::partial);
 }
 
 TEST(StandIns, NoneChangeNothing) {
