@@ -59,12 +59,14 @@ function(mgtd_batches target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# mgtd_unoptimised(TARGET): clang compiles files in about half the time where it does not optimise them. For what
-# does not compute for long, in the presets of everyday work (docs/building.md).
+# mgtd_unoptimised(TARGET), mgtd_unoptimised_source(FILE): clang compiles files in about half the time where it does not
+# optimise them. For what does not compute for long, in the presets of everyday work (docs/building.md).
+set(mgtd_O0 $<$<AND:$<CONFIG:Debug>,$<CXX_COMPILER_ID:Clang>>:-O0>)
 function(mgtd_unoptimised target)
-  if(CMAKE_BUILD_TYPE STREQUAL "Debug" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-    target_compile_options(${target} PRIVATE -O0)
-  endif()
+  target_compile_options(${target} PRIVATE ${mgtd_O0})
+endfunction()
+function(mgtd_unoptimised_source source)
+  set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS ${mgtd_O0})
 endfunction()
 
 # mgtd_room(NAME [WITHOUT FOLDER] [dependencies]): one static library per room from every source below it, but for those
