@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>

@@ -62,11 +62,11 @@ double SlowProcess::variance_within(double length_s) const {
 
 std::vector<SlowProcess> flicker(double nT_per_sqrt_hz) {
   constexpr int kDecades = 7, kPerDecade = 2;
-  constexpr double kShortest_s = 0.01;
+  constexpr double kFastest_s = 0.01;
   std::vector<SlowProcess> out;
   const double sd_nT = nT_per_sqrt_hz * std::sqrt(std::log(10.0) / kPerDecade);
   for (int k = 0; k <= kDecades * kPerDecade; ++k)
-    out.push_back(SlowProcess::wandering(sd_nT, kShortest_s * std::pow(10.0, k / double{kPerDecade})));
+    out.push_back(SlowProcess::wandering(sd_nT, kFastest_s * std::pow(10.0, k / double{kPerDecade})));
   return out;
 }
 
