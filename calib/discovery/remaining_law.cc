@@ -40,15 +40,9 @@ bool can_be_compared(const effects::Effect& effect) {
   return effects::library::find_family(name) != nullptr && name != "site.dipole" && name != "site.step";
 }
 
-std::vector<std::string> specs_of(const Effects& model) {
-  std::vector<std::string> out;
-  for (const effects::EffectPtr& effect : model) out.push_back(effect->spec());
-  return out;
-}
-
 /// What a search has added to a model; what it replaced is not in `described` any more.
 Effects added(const Effects& described, const Effects& given) {
-  const std::vector<std::string> before = specs_of(given);
+  const std::vector<std::string> before = effects::specs_of(given);
   Effects out;
   for (const effects::EffectPtr& effect : described)
     if (std::find(before.begin(), before.end(), effect->spec()) == before.end()) out.push_back(effect);

@@ -55,6 +55,12 @@ Result<void> Effect::applicable(const PoseTable& table) const {
                   lack.column, name()));
 }
 
+std::vector<std::string> specs_of(std::span<const EffectPtr> effects) {
+  std::vector<std::string> out;
+  for (const EffectPtr& effect : effects) out.push_back(effect->spec());
+  return out;
+}
+
 CovariateMeans covariate_means(const PoseTable& table) {
   CovariateMeans sum, count;
   for (const Pose& pose : table.poses) {

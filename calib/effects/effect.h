@@ -154,4 +154,7 @@ class EffectOf : public Effect {
 
 using EffectPtr = std::shared_ptr<const Effect>;
 
+/// In their order.
+[[nodiscard]] std::vector<std::string> specs_of(std::span<const EffectPtr> effects);
+
 }  // namespace mgtd::calib::effects

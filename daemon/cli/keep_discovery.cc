@@ -78,8 +78,10 @@ Result<std::vector<std::string>> keep_discovery(store::RunFile& file, store::Pos
     }
   }
   for (const char* of_the_moment : {"text", "commands", "next"}) found_json.erase(of_the_moment);
-  store::KeptDiscovery kept{.data_hash = hash, .model = {}, .at = now_text(), .found = std::move(found_json)};
-  for (const calib::effects::EffectPtr& effect : options.effects) kept.model.push_back(effect->spec());
+  const store::KeptDiscovery kept{.data_hash = hash,
+                                  .model = calib::effects::specs_of(options.effects),
+                                  .at = now_text(),
+                                  .found = std::move(found_json)};
   if (auto ok = file.set_document(store::kDiscoveryDocument, store::to_text(kept)); !ok)
     return tl::unexpected(ok.error());
   return names;

@@ -18,15 +18,9 @@ using calib::discovery::RemainingLaw;
 
 namespace {
 
-std::vector<std::string> specs_of(const std::vector<calib::effects::EffectPtr>& effects) {
-  std::vector<std::string> out;
-  for (const calib::effects::EffectPtr& effect : effects) out.push_back(effect->spec());
-  return out;
-}
-
 std::string heading(const RemainingLaw& law) {
   const std::string beside =
-      law.model.empty() ? "" : fmt::format(" beside {}", fmt::join(specs_of(law.model), ", "));
+      law.model.empty() ? "" : fmt::format(" beside {}", fmt::join(calib::effects::specs_of(law.model), ", "));
   if (law.instead_of.empty()) return "A formula for what remains" + beside;
   return fmt::format("A formula for everything{}, instead of {}", beside, fmt::join(law.instead_of, ", "));
 }

@@ -38,8 +38,7 @@ using calib::criticism::tests::PosePoints;
 using Effects = std::vector<calib::effects::EffectPtr>;
 
 bool same_model(const Effects& a, const Effects& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const auto& x, const auto& y) { return x->spec() == y->spec(); });
+  return calib::effects::specs_of(a) == calib::effects::specs_of(b);
 }
 
 calib::fit::FitOptions with_model(calib::fit::FitOptions options, const Effects& effects) {
@@ -142,10 +141,8 @@ Result<void> show_law(const calib::discovery::RemainingLaw& law, ReportContent& 
   auto pages = calib::report::law_pages(calib::report::to_json(*law.found, c.run));
   if (!pages) return tl::unexpected(pages.error());
   c.laws = *std::move(pages);
-  std::vector<std::string> specs;
-  for (const calib::effects::EffectPtr& effect : law.model) specs.push_back(effect->spec());
   c.laws_note = fmt::format("Searched for this report beside {}; mgt explain says how to keep it.",
-                            searched_beside(specs));
+                            searched_beside(calib::effects::specs_of(law.model)));
   return {};
 }
 

@@ -19,6 +19,7 @@
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/run/law_hypotheses.h"
 #include "daemon/run/solver.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -65,6 +66,13 @@ std::string found_text(const RunEvidence& e) {
   return out;
 }
 
+/// The search again, beside the same effects.
+std::string discover_command(const RunEvidence& e) {
+  std::string out = "mgt discover";
+  for (const std::string& effect : e.model) out += " --with " + shell_word(effect);
+  return out;
+}
+
 std::vector<RequestedPose> requested(const NextStep& step) {
   const auto list = calib::poses::read_pose_list(calib::report::pose_list(step), "mgt next");
   return list ? plan::requested_poses(*list) : std::vector<RequestedPose>{};
@@ -107,6 +115,17 @@ void settle(const NextReport& next, double minutes_left, NextPoses& out) {
 
 int sensors_of(const PoseTable& table) {
   return calib::effects::EffectContext{.table = &table, .offset_nT = {}}.sensors();
+}
+
+/// The effects of `searched` that the model of the run does not hold.
+std::vector<std::string> beyond(const std::vector<calib::effects::EffectPtr>& kept,
+                                const std::vector<calib::effects::EffectPtr>& searched) {
+  const std::vector<std::string> in_model = calib::effects::specs_of(kept);
+  std::vector<std::string> out = calib::effects::specs_of(searched);
+  std::erase_if(out, [&](const std::string& spec) {
+    return std::find(in_model.begin(), in_model.end(), spec) != in_model.end();
+  });
+  return out;
 }
 
 /// Formulas for what is left, beside the effects of the library that account for a part of it. Each of those
@@ -175,11 +194,9 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
     out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::law) {
     out.judgement.next =
-        e.formulas_account_for_all() ? "a formula accounts for everything: mgt discover says how to keep it"
-        : e.beside.empty()
-            ? "a formula accounts for the rest: mgt discover says how to keep it"
-            : fmt::format("a formula accounts for the rest: mgt discover --with {} says how to keep it",
-                          fmt::join(e.beside, " --with "));
+        e.formulas_account_for_all()
+            ? "a formula accounts for everything: mgt discover says how to keep it"
+            : fmt::format("a formula accounts for the rest: {} says how to keep it", discover_command(e));
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::pass && !e.beside.empty()) {
     out.judgement.next =
         fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.beside, " and "));
@@ -211,6 +228,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
       options.effects = explained->model;
       discover_in(options, evidence);
     }
+    evidence.model = beyond(search.fit.effects, options.effects);
     if (evidence.leaves_formulas_open()) {
       const std::size_t asked = evidence.discovered->reason.law;
       const auto hypotheses = hypotheses_of(evidence.discovered->laws[asked], sensors_of(table));

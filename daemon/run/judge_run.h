@@ -25,8 +25,8 @@
 ///
 /// What is named in part is no end: where no formula is open, effects that stay open beside one another are
 /// told apart; and where an effect of the library accounts for what explain() leaves, formulas are looked for
-/// once more beside it. Effects that describe a part may stand in for a law of no library: where
-/// formulas account for everything without them, their names are taken back (remaining_law.h).
+/// once more beside it. Effects that describe a part may stand in for a law of no library: where formulas
+/// account for everything without them, their names are taken back (remaining_law.h).
 namespace mgtd::daemon::run {
 
 struct NextPoses {
@@ -41,6 +41,7 @@ struct RunEvidence {
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
   std::vector<std::string> beside{};  ///< effects of the library that the search found before that, specs
+  std::vector<std::string> model{};   ///< those and what explain() named: the `--with` of that search
 
   /// They took the place of all that explain() named.
   [[nodiscard]] bool formulas_account_for_all() const;

@@ -66,7 +66,7 @@ std::optional<double> held_out_residual(const std::optional<fit::joint::JointErr
 }
 
 void fill(const ModelStage& before, const ModelStage& after, ModelChange& out) {
-  for (const effects::EffectPtr& effect : after.options.effects) out.model.push_back(effect->spec());
+  out.model = effects::specs_of(after.options.effects);
   out.chi2_before = before.fit.chi2, out.dof_before = before.fit.dof;
   out.chi2_after = after.fit.chi2, out.dof_after = after.fit.dof;
   out.rms_before_nT = before.errors.residual_nT, out.rms_after_nT = after.errors.residual_nT;

@@ -16,9 +16,8 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
 void take_back_stand_ins(const std::vector<std::string>& stand_ins, ExplainReport& report) {
   if (stand_ins.empty()) return;
   const std::string first = report.named.empty() ? "" : report.named.front();
-  std::vector<std::string> given;
-  if (report.fit)
-    for (const effects::EffectPtr& effect : report.fit->problem.effects) given.push_back(effect->spec());
+  const std::vector<std::string> given =
+      report.fit ? effects::specs_of(report.fit->problem.effects) : std::vector<std::string>{};
   std::set<std::string> taken_back, kept;
   for (const effects::EffectPtr& effect : report.model) {
     if (holds(given, effect->spec())) continue;

@@ -208,8 +208,12 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
   ExplainReport explained;
   explained.finding = Finding::unknown;
   calib::discovery::DiscoveryReport found;
-  RunEvidence evidence{
-      .table = table, .explained = explained, .next = {}, .discovered = found, .beside = {"axis.cubic@s3.z"}};
+  RunEvidence evidence{.table = table,
+                       .explained = explained,
+                       .next = {},
+                       .discovered = found,
+                       .beside = {"axis.cubic@s3.z"},
+                       .model = {"axis.gain.step@s1.x,t=0.4", "axis.cubic@s3.z"}};
   NextPoses out = next_poses(evidence, 30, 4);
   EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
   EXPECT_THAT(out.judgement.next, HasSubstr("nothing is left beside axis.cubic@s3.z"));
@@ -217,7 +221,9 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
   evidence.discovered->laws.emplace_back();
   evidence.discovered->laws.front().formulas.resize(1);
   out = next_poses(evidence, 30, 4);
-  EXPECT_THAT(out.judgement.next, HasSubstr("mgt discover --with axis.cubic@s3.z says how to keep it"));
+  EXPECT_THAT(out.judgement.next,
+              HasSubstr("mgt discover --with axis.gain.step@s1.x,t=0.4 --with axis.cubic@s3.z says how to "
+                        "keep it"));
 }
 
 TEST(RunJudgement, ReadsBackAsItWasWritten) {
