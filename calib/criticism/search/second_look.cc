@@ -2,8 +2,8 @@
 #include "calib/criticism/search/second_look.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "calib/criticism/search/narrow_model.h"
 #include "calib/criticism/tests/scan_refinement.h"
 
 namespace mgtd::calib::criticism::search {
@@ -11,39 +11,6 @@ namespace {
 
 /// Of the variance before over that after: from here on a second look can tell more than the first.
 constexpr double kMuchLess = 1.5;
-
-struct Narrow {
-  fit::joint::JointProblem problem;
-  fit::joint::JointState state;
-};
-
-/// The model without the winner at the place where the fit with it ended, and with its weights.
-std::optional<Narrow> without_winner(const PoseTable& table, const fit::joint::JointOptions& options,
-                                     const fit::joint::JointFit& with) {
-  auto problem = fit::joint::joint_problem(table, options);
-  if (!problem || problem->poses.size() != with.problem.poses.size()) return std::nullopt;
-  fit::joint::fix_gauge(*problem, options);
-  for (std::size_t k = 0; k < problem->poses.size(); ++k) {
-    problem->poses[k].weight = with.problem.poses[k].weight;
-    problem->poses[k].f_weight = with.problem.poses[k].f_weight;
-    problem->poses[k].attitude_weight = with.problem.poses[k].attitude_weight;
-    problem->poses[k].reference_weight = with.problem.poses[k].reference_weight;
-  }
-  fit::joint::JointState state = fit::joint::joint_state(*problem, with.state);
-  state.nuisances = with.state.nuisances;
-  Eigen::Index at = 0;
-  for (const effects::EffectPtr& effect : problem->effects) {
-    const auto own = static_cast<Eigen::Index>(effect->coefficients().size());
-    Eigen::Index from = 0;
-    for (const effects::EffectPtr& known : with.problem.effects) {
-      if (known->spec() == effect->spec())
-        state.coefficients.segment(at, own) = with.state.coefficients.segment(from, own);
-      from += static_cast<Eigen::Index>(known->coefficients().size());
-    }
-    at += own;
-  }
-  return Narrow{*std::move(problem), std::move(state)};
-}
 
 }  // namespace
 
@@ -55,7 +22,7 @@ std::optional<SecondLook> second_look(const PoseTable& table, const fit::joint::
   const double after = std::max(1.0, with.chi2 / std::max(with.dof, 1.0));
   if (first.noise.reference.scale2 * noise_inflation * noise_inflation < kMuchLess * after)
     return std::nullopt;
-  const auto at = without_winner(table, narrow, with);
+  const auto at = narrow_model(table, narrow, with);
   if (!at) return std::nullopt;
   tests::Residual residual(at->problem, at->state, 0);
   residual.measure_by(after);

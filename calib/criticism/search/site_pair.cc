@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "calib/criticism/search/narrow_model.h"
 #include "calib/criticism/tests/dipole_search.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/scan_refinement.h"
@@ -79,7 +80,7 @@ std::optional<SitePair> placed(const std::array<std::string_view, 2>& names, con
   Eigen::VectorXd of_dipoles(0);
   if (dipoles > 0) {
     const tests::CandidateEffect& family = *candidate(search, kDipole);
-    auto found = tests::find_dipoles(
+    const auto found = tests::find_dipoles(
         point.problem, point.state, point.residual,
         [&](const Eigen::Vector3d& place_S_m) { return family.dipole_at(place_S_m, std::nullopt); }, dipoles,
         beside);
@@ -128,15 +129,47 @@ bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
   return true;
 }
 
-/// Pairs that can be fitted with places searched about one point, best first; of two with the same names the
-/// better one.
+/// The first dipole that a fit has beyond what was given, and a second one: searched with the first in the
+/// model, about that fit without its other effects. The place of the one is known well, and so are the
+/// sensors' parameters, where the fit has something in the place of the other; both places at once are
+/// searched about parameters that two dipoles have bent.
+std::optional<SitePair> with_second(const EffectSearch& search, const fit::joint::JointFit& known) {
+  const auto& effects = known.problem.effects;
+  const auto dipole =
+      std::find_if(effects.begin() + static_cast<std::ptrdiff_t>(search.given.size()), effects.end(),
+                   [](const effects::EffectPtr& effect) { return effect->name() == kDipole; });
+  const tests::CandidateEffect* const family = candidate(search, kDipole);
+  if (dipole == effects.end() || family == nullptr) return std::nullopt;
+  fit::joint::JointOptions options = search.joint;
+  options.effects = search.given;
+  options.effects.push_back(*dipole);
+  const auto narrow = narrow_model(search.table, options, known);
+  if (!narrow) return std::nullopt;
+  const Point point(narrow->problem, narrow->state);
+  const auto found = tests::find_dipoles(
+      point.problem, point.state, point.residual,
+      [&](const Eigen::Vector3d& place_S_m) { return family->dipole_at(place_S_m, std::nullopt); }, 1,
+      Eigen::MatrixXd(point.residual.value().size(), 0));
+  if (!found) return std::nullopt;
+  SitePair out;
+  out.effects = {*dipole, found->effects.front()};
+  out.start = Eigen::VectorXd::Zero(coefficients_of(out.effects));
+  out.start.head<6>() = narrow->state.coefficients.tail<6>();
+  out.start.segment<3>(6) = found->moments_Am2;
+  return out;
+}
+
+/// Pairs that can be fitted with places searched about one point, and of two dipoles with the second searched
+/// beside one of `known`, best first; of two with the same names the better one.
 void add_pairs(const EffectSearch& search, const fit::joint::JointFit& base,
-               const fit::joint::JointState& about, std::vector<SitePair>& out) {
-  const Point point(base.problem, about);
-  for (const auto& names : kPairs) {
-    auto pair = placed(names, search, point);
+               const fit::joint::JointState& about, const fit::joint::JointFit& known,
+               std::vector<SitePair>& out) {
+  const auto add = [&](std::optional<SitePair> pair) {
     if (pair && fit_with(search, base, about, *pair)) out.push_back(*std::move(pair));
-  }
+  };
+  const Point point(base.problem, about);
+  for (const auto& names : kPairs) add(placed(names, search, point));
+  add(with_second(search, known));
   std::stable_sort(out.begin(), out.end(),
                    [](const SitePair& a, const SitePair& b) { return a.cost < b.cost; });
   std::set<std::multiset<std::string>> seen;
@@ -160,7 +193,7 @@ std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::Joi
                                double of_rounds) {
   constexpr int kMostSearches = 4;
   std::vector<SitePair> out;
-  add_pairs(search, base, base.state, out);
+  add_pairs(search, base, base.state, base, out);
   double least = std::numeric_limits<double>::infinity();
   for (int i = 1; i < kMostSearches; ++i) {
     const bool rounds = out.empty() || of_rounds < out.front().cost;
@@ -168,7 +201,7 @@ std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::Joi
     if (cost > least - kClearly) break;
     least = cost;
     const fit::joint::JointFit& best = rounds ? search.fit : *out.front().fit;
-    add_pairs(search, base, given_state(best, base), out);
+    add_pairs(search, base, given_state(best, base), best, out);
   }
   return out;
 }
