@@ -199,7 +199,7 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
             : fmt::format("a formula accounts for the rest: {} says how to keep it", discover_command(e));
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::pass && !e.beside.empty()) {
     out.judgement.next =
-        fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.beside, " and "));
+        fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.model, " and "));
   } else if (looks_left <= 0) {
     out.judgement.next = fmt::format("the run was judged {} times, and that is the most", kMostJudgements);
   } else if (open) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "calib/criticism/search/explain_report.h"
@@ -41,7 +42,8 @@ struct RunEvidence {
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
   std::vector<std::string> beside{};  ///< effects of the library that the search found before that, specs
-  std::vector<std::string> model{};   ///< those and what explain() named: the `--with` of that search
+  std::vector<std::string>
+      model{};  ///< all that it was searched beside, but for what the run keeps: `--with` of mgt discover
 
   /// They took the place of all that explain() named.
   [[nodiscard]] bool formulas_account_for_all() const;

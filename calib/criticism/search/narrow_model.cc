@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/criticism/search/narrow_model.h"
 
+#include <utility>
 
 namespace mgtd::calib::criticism::search {
 

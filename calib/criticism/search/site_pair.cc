@@ -12,6 +12,8 @@
 #include "calib/criticism/tests/dipole_search.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/scan_refinement.h"
+#include "calib/effects/effect_spec.h"
+#include "calib/effects/laws/dipole_field.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -112,12 +114,18 @@ double cost_of(const fit::joint::JointFit& fit, const fit::joint::JointFit& base
          kLeftOut * left_out(fit);
 }
 
+/// The model that was asked about with `more` effects.
+fit::joint::JointOptions given_and(const EffectSearch& search, const std::vector<effects::EffectPtr>& more) {
+  fit::joint::JointOptions out = search.joint;
+  out.effects = search.given;
+  out.effects.insert(out.effects.end(), more.begin(), more.end());
+  return out;
+}
+
 /// Fits the model with a pair, from where the search for its places ended.
 bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
               const fit::joint::JointState& from, SitePair& pair) {
-  fit::joint::JointOptions options = search.joint;
-  options.effects = search.given;
-  options.effects.insert(options.effects.end(), pair.effects.begin(), pair.effects.end());
+  fit::joint::JointOptions options = given_and(search, pair.effects);
   options.noise_inflation = base.noise_inflation;
   fit::joint::JointState start = from;
   start.coefficients.resize(from.coefficients.size() + pair.start.size());
@@ -129,38 +137,48 @@ bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
   return true;
 }
 
+/// The dipole where it stands with its shift.
+Result<effects::EffectPtr> shifted(const effects::EffectPtr& dipole, const Eigen::Vector3d& shift_m,
+                                   const tests::CandidateEffect& family) {
+  const auto spec = effects::EffectSpec::parse(dipole->spec());
+  if (!spec) return tl::unexpected(spec.error());
+  const auto place_S_m = effects::laws::dipole_place_S_m(*spec);
+  if (!place_S_m) return tl::unexpected(place_S_m.error());
+  return family.dipole_at(*place_S_m + shift_m, std::nullopt);
+}
+
 /// The first dipole that a fit has beyond what was given, and a second one: searched with the first in the
 /// model, about that fit without its other effects. The place of the one is known well, and so are the
 /// sensors' parameters, where the fit has something in the place of the other; both places at once are
 /// searched about parameters that two dipoles have bent.
 std::optional<SitePair> with_second(const EffectSearch& search, const fit::joint::JointFit& known) {
   const auto& effects = known.problem.effects;
-  const auto dipole =
-      std::find_if(effects.begin() + static_cast<std::ptrdiff_t>(search.given.size()), effects.end(),
-                   [](const effects::EffectPtr& effect) { return effect->name() == kDipole; });
+  const std::vector<std::string> given = effects::specs_of(search.given);
+  const auto dipole = std::find_if(effects.begin(), effects.end(), [&](const effects::EffectPtr& effect) {
+    return effect->name() == kDipole && std::find(given.begin(), given.end(), effect->spec()) == given.end();
+  });
   const tests::CandidateEffect* const family = candidate(search, kDipole);
   if (dipole == effects.end() || family == nullptr) return std::nullopt;
-  fit::joint::JointOptions options = search.joint;
-  options.effects = search.given;
-  options.effects.push_back(*dipole);
-  const auto narrow = narrow_model(search.table, options, known);
+  const auto narrow = narrow_model(search.table, given_and(search, {*dipole}), known);
   if (!narrow) return std::nullopt;
   const Point point(narrow->problem, narrow->state);
   const auto found = tests::find_dipoles(
       point.problem, point.state, point.residual,
       [&](const Eigen::Vector3d& place_S_m) { return family->dipole_at(place_S_m, std::nullopt); }, 1,
       Eigen::MatrixXd(point.residual.value().size(), 0));
-  if (!found) return std::nullopt;
+  const auto moment_and_shift = narrow->state.coefficients.tail<6>();
+  const auto first = shifted(*dipole, moment_and_shift.tail<3>(), *family);
+  if (!found || !first) return std::nullopt;
   SitePair out;
-  out.effects = {*dipole, found->effects.front()};
+  out.effects = {*first, found->effects.front()};
   out.start = Eigen::VectorXd::Zero(coefficients_of(out.effects));
-  out.start.head<6>() = narrow->state.coefficients.tail<6>();
+  out.start.head<3>() = moment_and_shift.head<3>();
   out.start.segment<3>(6) = found->moments_Am2;
   return out;
 }
 
-/// Pairs that can be fitted with places searched about one point, and of two dipoles with the second searched
-/// beside one of `known`, best first; of two with the same names the better one.
+/// Adds the pairs that can be fitted: with places searched about one point, and two dipoles with the second
+/// searched beside one that `known` has. Best first; of two with the same names the better one.
 void add_pairs(const EffectSearch& search, const fit::joint::JointFit& base,
                const fit::joint::JointState& about, const fit::joint::JointFit& known,
                std::vector<SitePair>& out) {
@@ -180,13 +198,6 @@ void add_pairs(const EffectSearch& search, const fit::joint::JointFit& base,
   });
 }
 
-/// Of a fit with more effects, without their coefficients.
-fit::joint::JointState given_state(const fit::joint::JointFit& fit, const fit::joint::JointFit& base) {
-  fit::joint::JointState out = fit.state;
-  out.coefficients.conservativeResize(base.state.coefficients.size());
-  return out;
-}
-
 /// Best first. Strong sources bend the fit without them, and places that are searched about it are wrong by
 /// more than the noise: so they are searched again about the best fit that is known, as long as that helps.
 std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::JointFit& base,
@@ -201,7 +212,9 @@ std::vector<SitePair> pairs_of(const EffectSearch& search, const fit::joint::Joi
     if (cost > least - kClearly) break;
     least = cost;
     const fit::joint::JointFit& best = rounds ? search.fit : *out.front().fit;
-    add_pairs(search, base, given_state(best, base), best, out);
+    const auto about = narrow_model(search.table, given_and(search, {}), best);
+    if (!about) break;
+    add_pairs(search, base, about->state, best, out);
   }
   return out;
 }

@@ -8,7 +8,8 @@
 /// The pairs are two dipoles, a dipole beside site.gradient, and site.gradient beside site.curvature; the
 /// places of dipoles are searched (tests/dipole_search.h), first about the fit without the pair, then,
 /// because strong sources bend that fit, about the best fit that is known, at most three times and as long as
-/// that helps. A second dipole is also searched beside the one that such a fit has. A pair is preferred to
+/// that helps. Where such a fit has a dipole that was not given, a second one
+/// is also searched beside it. A pair is preferred to
 /// the effects of the rounds where
 ///
 ///     n ln(chi2) + k ln(n),   n degrees of freedom, k coefficients,     Schwarz, Ann. Statist. 6 (1978) 461

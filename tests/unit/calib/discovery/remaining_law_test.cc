@@ -21,12 +21,6 @@ std::vector<effects::EffectPtr> model(const std::vector<std::string>& specs) {
   return out;
 }
 
-std::vector<std::string> specs_of(const std::vector<effects::EffectPtr>& effects) {
-  std::vector<std::string> out;
-  for (const effects::EffectPtr& effect : effects) out.push_back(effect->spec());
-  return out;
-}
-
 /// A fourth power of its own reading on s2.z, for which a square stands in, and a third power on s1.x.
 PoseTable powers(double fourth_nT, double third_nT, std::uint64_t seed) {
   return testing::run_with({.noise_nT = 0.05,
@@ -55,7 +49,7 @@ TEST(RemainingLaw, TakesThePlaceOfAnEffectThatDescribesAPart) {
 TEST(RemainingLaw, AnEffectThatSavesAFormulaKeepsItsName) {
   const auto law = remaining_law(powers(3, 3, 5), kQuick, model({"axis.cubic@s1.x", "axis.quadratic@s2.z"}));
   ASSERT_TRUE(law.found) << law.found.error().text();
-  EXPECT_THAT(specs_of(law.model), ElementsAre("axis.cubic@s1.x"));
+  EXPECT_THAT(effects::specs_of(law.model), ElementsAre("axis.cubic@s1.x"));
   EXPECT_THAT(law.instead_of, ElementsAre("axis.quadratic@s2.z"));
   ASSERT_TRUE(law.found->accounts_for_everything()) << report::to_text(*law.found, "run.csv");
   ASSERT_EQ(law.found->laws.size(), 1U);

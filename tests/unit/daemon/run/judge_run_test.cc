@@ -216,7 +216,8 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
                        .model = {"axis.gain.step@s1.x,t=0.4", "axis.cubic@s3.z"}};
   NextPoses out = next_poses(evidence, 30, 4);
   EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
-  EXPECT_THAT(out.judgement.next, HasSubstr("nothing is left beside axis.cubic@s3.z"));
+  EXPECT_THAT(out.judgement.next,
+              HasSubstr("nothing is left beside axis.gain.step@s1.x,t=0.4 and axis.cubic@s3.z"));
   evidence.discovered->finding = calib::discovery::LawFinding::law;
   evidence.discovered->laws.emplace_back();
   evidence.discovered->laws.front().formulas.resize(1);

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
 
 #include "calib/criticism/search/explain.h"
 #include "calib/effects/common_axis.h"
@@ -32,6 +35,7 @@ testing::RealRun real_run(std::string_view name, std::uint64_t seed) {
   const auto& kinds = testing::real_kinds();
   const auto kind =
       std::find_if(kinds.begin(), kinds.end(), [&](const testing::RealKind& k) { return k.name == name; });
+  if (kind == kinds.end()) throw std::invalid_argument("no such kind");
   return kind->make(seed);
 }
 
@@ -107,6 +111,7 @@ TEST(SitePair, FindsASecondDipoleBesideTheFirst) {
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_EQ(report->finding, Finding::explained);
   EXPECT_THAT(report->named, UnorderedElementsAre("site.dipole"));
+  ASSERT_EQ(report->rounds.size(), 2U);
   EXPECT_EQ(places_of_dipoles(*report->rounds.back().fit).size(), 2U);
   EXPECT_LT(report->rounds.back().rms_after_nT, 1.1 * report->noise_nT);
 }
