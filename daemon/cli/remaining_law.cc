@@ -20,7 +20,8 @@ namespace {
 
 std::string heading(const RemainingLaw& law) {
   const std::string beside =
-      law.model.empty() ? "" : fmt::format(" beside {}", fmt::join(calib::effects::specs_of(law.model), ", "));
+      law.model.empty() ? ""
+                        : fmt::format(" beside {}", fmt::join(calib::effects::specs_of(law.model), ", "));
   if (law.instead_of.empty()) return "A formula for what remains" + beside;
   return fmt::format("A formula for everything{}, instead of {}", beside, fmt::join(law.instead_of, ", "));
 }

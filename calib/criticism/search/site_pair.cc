@@ -12,8 +12,6 @@
 #include "calib/criticism/tests/dipole_search.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/scan_refinement.h"
-#include "calib/effects/effect_spec.h"
-#include "calib/effects/laws/dipole_field.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -137,16 +135,6 @@ bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
   return true;
 }
 
-/// The dipole where it stands with its shift.
-Result<effects::EffectPtr> shifted(const effects::EffectPtr& dipole, const Eigen::Vector3d& shift_m,
-                                   const tests::CandidateEffect& family) {
-  const auto spec = effects::EffectSpec::parse(dipole->spec());
-  if (!spec) return tl::unexpected(spec.error());
-  const auto place_S_m = effects::laws::dipole_place_S_m(*spec);
-  if (!place_S_m) return tl::unexpected(place_S_m.error());
-  return family.dipole_at(*place_S_m + shift_m, std::nullopt);
-}
-
 /// The first dipole that a fit has beyond what was given, and a second one: searched with the first in the
 /// model, about that fit without its other effects. The place of the one is known well, and so are the
 /// sensors' parameters, where the fit has something in the place of the other; both places at once are
@@ -166,13 +154,11 @@ std::optional<SitePair> with_second(const EffectSearch& search, const fit::joint
       point.problem, point.state, point.residual,
       [&](const Eigen::Vector3d& place_S_m) { return family->dipole_at(place_S_m, std::nullopt); }, 1,
       Eigen::MatrixXd(point.residual.value().size(), 0));
-  const auto moment_and_shift = narrow->state.coefficients.tail<6>();
-  const auto first = shifted(*dipole, moment_and_shift.tail<3>(), *family);
-  if (!found || !first) return std::nullopt;
+  if (!found) return std::nullopt;
   SitePair out;
-  out.effects = {*first, found->effects.front()};
+  out.effects = {*dipole, found->effects.front()};
   out.start = Eigen::VectorXd::Zero(coefficients_of(out.effects));
-  out.start.head<3>() = moment_and_shift.head<3>();
+  out.start.head<6>() = narrow->state.coefficients.tail<6>();  // moment and shift
   out.start.segment<3>(6) = found->moments_Am2;
   return out;
 }
