@@ -42,8 +42,7 @@ struct RunEvidence {
   std::optional<calib::criticism::search::NextReport> next{};
   std::optional<calib::discovery::DiscoveryReport> discovered{};
   std::vector<std::string> beside{};  ///< effects of the library that the search found before that, specs
-  std::vector<std::string>
-      model{};  ///< all that it was searched beside, but for what the run keeps: `--with` of mgt discover
+  std::vector<std::string> model{};   ///< that it was searched beside and the run does not keep, specs
 
   /// They took the place of all that explain() named.
   [[nodiscard]] bool formulas_account_for_all() const;
