@@ -4,10 +4,12 @@
 
 namespace mgtd::daemon::cli {
 
-/// After this call these signals are remembered and no longer end the program, and a system call that waits
-/// (for a line of the keyboard) ends when one comes: std::signal would have it go on.
+/// After this call these signals are remembered and no longer end the program.
 void catch_interrupts(std::initializer_list<int> signals);
 /// Whether one came.
 [[nodiscard]] bool interrupted();
+/// Waits until `fd` can be read, also to its end. False when one of these signals came, before the call or
+/// during it: no moment is left in which it could be missed.
+[[nodiscard]] bool wait_for_input(int fd);
 
 }  // namespace mgtd::daemon::cli

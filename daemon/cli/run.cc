@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -14,6 +12,7 @@
 #include "calib/poses/pose_list.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/course_text.h"
+#include "daemon/cli/input_lines.h"
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
@@ -52,30 +51,25 @@ int print_end(const Session& session, const RunStatus& run) {
   return 0;
 }
 
-/// Asks until the operator enters something that the daemon accepts. False at the end of the input.
-bool answer(const Session& session, serve::ControlClient& client, const OperatorPrompt& prompt) {
-  while (!interrupted()) {
+/// Asks until the operator enters something that the daemon accepts, or interrupts. False at the end of the
+/// input.
+bool answer(const Session& session, serve::ControlClient& client, InputLines& keyboard,
+            const OperatorPrompt& prompt) {
+  for (;;) {
     fmt::print(stderr, "{}", question(prompt));
-    std::string line;
-    errno = 0;
-    const bool answered = !session.json && std::getline(std::cin, line);
+    const auto line = session.json ? std::nullopt : keyboard.next();
     if (interrupted()) return true;
-    if (!answered && errno == EINTR) {  // a signal is not the end of the input
-      std::cin.clear(), std::clearerr(stdin);
-      continue;
-    }
-    if (!answered) {
+    if (!line) {
       fmt::print(stderr, "\nno more input here; answer from any terminal with: mgt run {}\n",
                  prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
       return false;
     }
-    const auto said = parse_answer(line, prompt.what);
+    const auto said = parse_answer(*line, prompt.what);
     const auto done = said ? client.request(said->command, said->args)
                            : Result<nlohmann::json>(tl::unexpected(said.error()));
     if (done) return true;
     fmt::print(stderr, "{}\n", done.error().text());
   }
-  return true;
 }
 
 /// Says once why a run waits that goes on by itself, and when it does.
@@ -103,6 +97,7 @@ int follow(const Session& session) {
   auto client = serve::ControlClient::connect(session.control_socket);
   if (!client) return report(session, client.error());
   std::string judged;
+  InputLines keyboard(STDIN_FILENO);
   WaitNotice wait;
   int last_tenth = -1;
   while (!interrupted()) {
@@ -126,7 +121,7 @@ int follow(const Session& session) {
     }
     if (run->prompt) {
       if (terminal) fmt::print(stderr, "\n");
-      if (!answer(session, *client, *run->prompt)) return print_end(session, *run);
+      if (!answer(session, *client, keyboard, *run->prompt)) return print_end(session, *run);
       continue;
     }
     if (!is_active(run->state) || (run->state == RunState::paused && !run->goes_on)) {

@@ -2,6 +2,8 @@
 #include "daemon/serve/control_client.h"
 
 #include <fmt/format.h>
+
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 namespace mgtd::daemon::serve {
@@ -17,9 +19,10 @@ Result<nlohmann::json> ControlClient::request(ControlCommand command, nlohmann::
   if (auto sent = stream_.send_line(encode(ControlRequest{command, std::move(args), id})); !sent) {
     return tl::unexpected(sent.error());
   }
-  for (;;) {
-    const auto line = stream_.read_line(wait);
+  for (const auto end = std::chrono::steady_clock::now() + wait;;) {
+    const auto line = stream_.read_line(end - std::chrono::steady_clock::now());
     if (!line) return tl::unexpected(line.error());
+    if (!*line && std::chrono::steady_clock::now() < end) continue;  // a signal came
     if (!*line) {
       return fail(ErrorCode::unreachable,
                   fmt::format("the daemon did not answer {} within {:g} s", name(command), to_seconds(wait)),

@@ -23,7 +23,8 @@ class LineStream {
   ~LineStream();
 
   [[nodiscard]] Result<void> send_line(std::string_view line);
-  /// The next line without its end; empty when none came within `wait`. `unreachable` when the daemon closed.
+  /// The next line without its end; empty when none came within `wait`, or when a signal came. `unreachable`
+  /// when the daemon closed.
   [[nodiscard]] Result<std::optional<std::string>> read_line(Duration wait);
 
  private:
