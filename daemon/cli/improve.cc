@@ -19,9 +19,9 @@ constexpr const char* kImproveHelp =
     "Each round adds the effect that explain names, fits everything again and judges what is left. An "
     "effect\n"
     "that makes held-out poses worse is not added.\n\n"
-    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula; --no-law "
-    "leaves\n"
-    "that out.\n\n"
+    "Where something remains (PARTIAL, UNKNOWN), mgt discover --quick looks for its formula, without the "
+    "added\n"
+    "effects first, since they may only stand in for it, and then beside them; --no-law leaves that out.\n\n"
     "  mgt improve run.mgtrun -o cal.json\n\n"
     "Exit code 0: nothing stands out any more. 1: something is left.";
 

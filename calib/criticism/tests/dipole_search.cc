@@ -11,7 +11,7 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-constexpr double kNearest_m = 0.3, kFarthest_m = 3;
+constexpr double kNearest_m = 0.3, kFarthest_m = 5;
 constexpr std::array kDistances_m{0.6, 1.5};
 /// Beside a gradient of the site, which takes up the gradient of a dipole, the dipole is known by its
 /// curvature alone, and more places look alike.

@@ -12,7 +12,7 @@
 /// With Z(p) the projected columns of the moments at places p, S(p) = |P_Z(p) r|^2. Each place is tried at a
 /// grid of directions and distances, two dipoles at every pair of them, since several places make the same
 /// gradient; from the best of them p is stepped by Gauss-Newton in moments and places together (variable
-/// projection), damped, until S stands. Distances from 0.3 to 3 m: nearer a dipole would hit the array, and
+/// projection), damped, until S stands. Distances from 0.3 to 5 m: nearer a dipole would hit the array, and
 /// what is further away is a gradient to these sensors.
 namespace mgtd::calib::criticism::tests {
 
