@@ -105,6 +105,8 @@ int follow(const Session& session) {
     if (!reply) return report(session, reply.error());
     const auto run = run_status_from_json(*reply);
     if (!run) return report(session, run.error());
+    if (run->state == RunState::idle)
+      return report(session, {ErrorCode::state, "no run is going on", "mgt run start begins one"});
     if (run->judged != judged && run->state != RunState::done) {
       judged = run->judged;
       fmt::print(stderr, "{}{}\n", terminal ? "\r\033[K" : "", judged);

@@ -75,6 +75,9 @@ TEST(Operator, WhileOneHasControlOthersLookAndMayStop) {
   EXPECT_THAT(refused.err, HasSubstr("somebody stands at the table"));
   EXPECT_THAT(refused.err, HasSubstr("control is with pid "));
   EXPECT_EQ(bench.mgt({"status"}).exit_code, 0);
+  const Finished nothing = bench.mgt({"run", "follow"});
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_EQ(nothing.err, "mgt: no run is going on\n     mgt run start begins one\n");
   EXPECT_THAT(bench.mgt({"run", "abort"}).err, Not(HasSubstr("control is with")))
       << "stopping is for everyone";
   holder.signal(SIGINT);
