@@ -42,6 +42,7 @@ double log_upper(double a, double x) {
 }
 
 double log_p(double x, double dof) {
+  if (std::isnan(x)) return x;
   if (!(x > 0) || !(dof > 0)) return 0;
   const double a = dof / 2, half = x / 2;
   return half < a + 1 ? std::log1p(-std::exp(log_lower(a, half))) : log_upper(a, half);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/memory_variance.h"
@@ -14,7 +15,9 @@
 #include "calib/linear/propagation.h"
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/poses/run_time.h"
+#include "calib/stats/chi_square.h"
 #include "calib/validity/fixed_calibration.h"
+#include "calib/validity/restricted_fit.h"
 
 namespace mgtd::calib::validity {
 namespace {
@@ -22,6 +25,7 @@ namespace {
 /// Scatter beyond the noise that a calibration may show and still be called valid: its own run set the noise,
 /// so more than this is something new.
 constexpr double kMaxExcess = 1.5;
+constexpr double kByChance = 0.003;  ///< probability that noise alone scatters so much more or less
 constexpr double kLeastNoise_nT = 1e-3;
 constexpr std::size_t kMinPoses = 4;
 /// Of the poses: what more of them contradict is the calibration.
@@ -75,24 +79,10 @@ void as_in_its_run(const calibration::Calibration& c, fit::joint::JointProblem& 
   }
 }
 
-/// Best site and field for sensors that stay as they are.
-void refit_site(const fit::joint::JointProblem& problem, const std::vector<Eigen::Index>& slots,
-                fit::joint::JointState& state) {
-  constexpr int kSteps = 4;  // almost linear
-  for (int i = 0; i < kSteps; ++i) {
-    const fit::joint::Reduced reduced = fit::joint::reduce(problem, state, 0);
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(problem.fixed());
-    step(slots) = inverse_of(reduced.S(slots, slots)).W * reduced.g(slots);
-    state = state.moved(step);
-    fit::joint::refit_nuisances(problem, state);
-  }
-}
-
 /// Score and information of the tested slots, everything else eliminated.
 struct Score {
   Eigen::MatrixXd S;
   Eigen::VectorXd g;
-  fit::joint::JointCost cost;
 };
 
 Score score_of(const fit::joint::Reduced& reduced, const FixedCalibration& frozen) {
@@ -100,7 +90,7 @@ Score score_of(const fit::joint::Reduced& reduced, const FixedCalibration& froze
   const Eigen::MatrixXd border = reduced.S(t, n);
   const Eigen::MatrixXd corner = inverse_of(reduced.S(n, n)).W;
   return {reduced.S(t, t) - border * corner * border.transpose(),
-          reduced.g(t) - border * corner * reduced.g(n), reduced.cost};
+          reduced.g(t) - border * corner * reduced.g(n)};
 }
 
 /// The directions of the tested slots that these poses see, whitened: z = A (change) + unit noise.
@@ -130,18 +120,24 @@ bool field_known(const fit::joint::JointProblem& problem) {
   });
 }
 
-/// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance.
+/// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance. With
+/// all of them free, as a fit of these poses alone would leave it.
 double excess_of(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
-                 const FixedCalibration& frozen, const fit::joint::JointCost& cost, const Seen& seen) {
-  const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(problem, state);
+                 const FixedCalibration& frozen, Eigen::Index seen) {
+  std::vector<Eigen::Index> free = frozen.tested;
+  free.insert(free.end(), frozen.nuisance.begin(), frozen.nuisance.end());
+  const fit::joint::JointState best = restricted_fit(problem, free, state);
+  const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(problem, best);
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
   for (const fit::joint::JointPose& pose : problem.poses)
     observed += pose.beside() + (problem.common_field ? 1 : 0);
   const double site = problem.site_unknowns() - (problem.common_field && field_known(problem) ? 1 : 0) +
                       static_cast<double>(frozen.nuisance.size()) - fit::joint::kGlobals;
-  const double dof = observed - site - static_cast<double>(seen.z.size());
-  const double chi2 = cost.of_model() - seen.z.squaredNorm();
-  return dof > 0 && std::abs(chi2 / dof - 1) > 3 * std::sqrt(2 / dof) ? std::sqrt(chi2 / dof) : 1;
+  const double dof = observed - site - static_cast<double>(seen);
+  const double chi2 = fit::joint::cost_of(problem, best).of_model();
+  if (!(dof > 0)) return 1;
+  const double p = stats::chi_square_p(chi2, dof);
+  return std::min(p, 1 - p) < kByChance / 2 ? std::sqrt(chi2 / dof) : 1;
 }
 
 Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::SensorModel>& sensors,
@@ -203,9 +199,8 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
   state.coefficients = frozen.coefficients;
   fit::joint::set_memory_variance(out.problem, state, joint.table_sd_rad);
   fit::joint::add_memory_variance(out.problem, 1);
-  fit::joint::refit_nuisances(out.problem, state);
   do {
-    refit_site(out.problem, frozen.nuisance, state);
+    state = restricted_fit(out.problem, frozen.nuisance, std::move(state));
   } while (out.outliers.judge(out.problem, state, fit::joint::pose_residuals(out.problem, state)));
   return out;
 }
@@ -242,7 +237,7 @@ Result<ValidityReport> check(const calibration::Calibration& calibration, const 
   turn_covariance(calibration, settled->placed.Q, *frozen);
   const Score score = score_of(fit::joint::reduce(problem, state, 0), *frozen);
   const Seen seen = seen_of(score);
-  report.excess = excess_of(problem, state, *frozen, score.cost, seen);
+  report.excess = excess_of(problem, state, *frozen, seen.z.size());
   const double factor = small_sample_factor(calibration.poses, calibration.sensors.size());
   frozen->covariance *= factor;
   const double noise = report.excess * std::sqrt(factor);

@@ -64,6 +64,37 @@ TEST(Check, SiteMayBeAnotherOne) {
   EXPECT_TRUE(check(plain, dozen(later, 34), with)->valid);
 }
 
+TEST(Check, ATurnedSensorIsFoundWhereTheSiteNeedsTheTableAngles) {
+  // What the turn does is at first taken for errors of the table, whose cost falls with it.
+  Simulation before = rig(), later = rig();
+  before.G_nT_per_m = later.G_nT_per_m = testing::gradient_50();
+  later.rig[2] =
+      turned(PerSensor<sensor::SensorModel>{later.rig[2]}, testing::passive(to_rad(2), 2)).sensors[0];
+  fit::FitOptions with;
+  with.effects = {*effects::library::make_effect("site.gradient")};
+  const auto report =
+      check(fit::method_choice::fit(simulate(before, 36, 121, 31), with)->calibration, dozen(later, 32), {});
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_FALSE(report->valid);
+  EXPECT_NEAR(report->excess, 1, 0.6);
+  EXPECT_THAT(report::validity_reasons(*report).front(), HasSubstr("s3"));
+}
+
+TEST(Check, FewPosesMayScatterByChance) {
+  // Six poses leave so few degrees of freedom beside a dipole that their scatter is often twice the noise.
+  fit::FitOptions with;
+  with.effects = {*effects::library::make_effect("site.dipole,x=0.3,y=-0.3,z=0.3")};
+  const auto fitted = fit::method_choice::fit(simulate(rig(), 36, 121, 35), with);
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  int alarms = 0;
+  for (std::uint64_t seed = 400; seed < 460; ++seed) {
+    const auto report = check(fitted->calibration, simulate(rig(), 0, 6, seed), {});
+    ASSERT_TRUE(report) << report.error().text();
+    alarms += report->valid ? 0 : 1;
+  }
+  EXPECT_LE(alarms, 3);
+}
+
 TEST(Check, ScatterThatNoParameterExplainsIsNotValid) {
   Simulation loud = rig();
   loud.noise_nT = 4;
