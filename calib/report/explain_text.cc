@@ -104,8 +104,7 @@ void confusions(const criticism::tests::ConfusionMatrix& c, std::string& out) {
 std::string to_text(const criticism::search::ExplainReport& r, std::size_t width) {
   std::string out;
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "{}{}{}\n{}\n", to_string(r.finding), r.named.empty() ? "" : ": ",
-                 fmt::join(r.named, r.finding == criticism::search::Finding::ambiguous ? " or " : ", "),
+  fmt::format_to(to, "{}{}{}\n{}\n", to_string(r.finding), r.named.empty() ? "" : ": ", names_text(r),
                  sentence(r));
   candidates(r, width, out);
   impacts(r.candidates, out);

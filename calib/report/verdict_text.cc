@@ -272,4 +272,17 @@ std::string sentence(const criticism::search::ExplainReport& r) {
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
+std::string names_text(const criticism::search::ExplainReport& r) {
+  if (r.finding != criticism::search::Finding::ambiguous) return fmt::format("{}", fmt::join(r.named, ", "));
+  std::vector<std::string> places, sure;
+  for (const criticism::search::Round& round : r.rounds) {
+    std::string place = round.added.effect;
+    for (const std::string& other : round.possible) place += " or " + other;
+    std::vector<std::string>& among = round.possible.empty() ? sure : places;
+    if (std::find(among.begin(), among.end(), place) == among.end()) among.push_back(std::move(place));
+  }
+  if (!sure.empty()) places.insert(places.begin(), fmt::format("{}", fmt::join(sure, ", ")));
+  return fmt::format("{}", fmt::join(places, "; "));
+}
+
 }  // namespace mgtd::calib::report

@@ -11,6 +11,9 @@ namespace mgtd::calib::report {
 /// nothing else.
 [[nodiscard]] std::string sentence(const criticism::search::ExplainReport& report);
 
+/// The names of the verdict: "A, B"; where another effect could stand in the place of one, "A; B or C".
+[[nodiscard]] std::string names_text(const criticism::search::ExplainReport& report);
+
 /// "0.14 nT (s3.z)"; in words where no size would be seen.
 [[nodiscard]] std::string detectable_text(const criticism::tests::Detectable& detectable);
 

@@ -16,6 +16,7 @@
 #include "calib/poses/pose_list.h"
 #include "calib/report/discovery_reason.h"
 #include "calib/report/next_report.h"
+#include "calib/report/verdict_text.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/run/law_hypotheses.h"
 #include "daemon/run/solver.h"
@@ -57,8 +58,7 @@ std::string found_text(const RunEvidence& e) {
                                                   r.stand_ins.size() == 1 ? "describes" : "describe");
   if (e.formulas_account_for_all()) return discovered_text(*e.discovered) + stand_ins;
   std::string out(to_string(r.finding));
-  if (!r.named.empty())
-    out += fmt::format(": {}", fmt::join(r.named, r.finding == Finding::ambiguous ? " or " : ", "));
+  if (!r.named.empty()) out += ": " + calib::report::names_text(r);
   if (e.discovered) {
     for (const std::string& effect : e.beside) out += fmt::format("; for the rest LIBRARY: {}", effect);
     out += fmt::format("; for the rest {}{}", discovered_text(*e.discovered), stand_ins);
@@ -162,10 +162,10 @@ bool discover_instead(calib::fit::FitOptions& options, ExplainReport& explained,
   return true;
 }
 
-/// next_after() asks about the first round.
-bool first_is_named(const ExplainReport& r) {
-  return !r.rounds.empty() &&
-         std::find(r.named.begin(), r.named.end(), r.rounds.front().added.effect) != r.named.end();
+/// next_after() asks about the open round.
+bool named_and_open(const ExplainReport& r) {
+  const calib::criticism::search::Round* const open = r.open_round();
+  return open != nullptr && std::find(r.named.begin(), r.named.end(), open->added.effect) != r.named.end();
 }
 
 }  // namespace
@@ -237,10 +237,7 @@ Result<NextPoses> judge(const PoseTable& table, calib::fit::FitOptions options, 
         if (auto next = calib::criticism::search::next_among(table, options, hypotheses))
           evidence.next = *std::move(next);
     }
-    const bool names_open =
-        std::any_of(explained->rounds.begin(), explained->rounds.end(),
-                    [](const calib::criticism::search::Round& r) { return !r.possible.empty(); });
-    if (first_is_named(*explained) && (!evidence.next || evidence.next->effect.empty()) && names_open)
+    if (named_and_open(*explained) && (!evidence.next || evidence.next->effect.empty()))
       if (auto next = calib::criticism::search::next_after(*explained, table, search, std::nullopt))
         evidence.next = *std::move(next);
   }

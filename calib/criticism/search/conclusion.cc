@@ -125,14 +125,14 @@ std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double 
 }
 
 /// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
-/// or a few readings make it; beside effects that were `named`, both the poses contradict each other and a
-/// few readings make it. Empty when it is not so.
+/// or a few readings make it. Beside effects that were `named` the poses must contradict each other and the
+/// residual must have longer tails than any law leaves. Empty when it is not so.
 std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit, const tests::Criticism& last,
                                                 bool named) {
   if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
   const fit::joint::Scatter scatter = fit::joint::scatter_of(fit);
   const bool contradicting = fit.contradicting > fit::checks::kMaxBadPoses;
-  const bool bad = named ? contradicting && scatter.few_far_off()
+  const bool bad = named ? contradicting && scatter.residual_nT > fit::joint::kTailsOfLaw * scatter.typical_nT
                          : (contradicting && !last.rejects()) || scatter.few_far_off();
   if (!bad) return std::nullopt;
   return ResidualWithoutLaw{fit.noise_inflation, scatter.residual_nT, scatter.typical_nT, fit.contradicting};

@@ -165,10 +165,9 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
     return add(search, family_called(search.criticism, *again->better), report, false);
   if (again && !again->better) exclude(again->alternatives, round);
   keep_memory_possible(search, search.criticism, round);
-  if (report.rounds.empty()) {
+  if (report.rounds.empty()) report.candidates[f].alternatives = round.added.alternatives;
+  if (report.rounds.empty() || (report.open_round() == nullptr && !round.possible.empty()))
     report.next = design::next_measurements(search.table, search.fit, search.joint, round.added).steps;
-    report.candidates[f].alternatives = round.added.alternatives;
-  }
   add_round(std::move(round), std::move(wider), *refit, search, report);
   return true;
 }

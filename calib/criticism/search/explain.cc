@@ -63,9 +63,12 @@ void name(ExplainReport& report) {
     if (std::find(report.named.begin(), report.named.end(), round.added.effect) == report.named.end())
       report.named.push_back(round.added.effect);
   }
-  if (report.finding == Finding::ambiguous) {
-    const auto& possible = report.rounds.front().possible;
-    report.named.insert(report.named.end(), possible.begin(), possible.end());
+  if (report.finding != Finding::ambiguous) return;
+  for (const Round& round : report.rounds) {
+    for (const std::string& other : round.possible) {
+      if (std::find(report.named.begin(), report.named.end(), other) == report.named.end())
+        report.named.push_back(other);
+    }
   }
 }
 
@@ -89,9 +92,11 @@ bool memory_may_be_it(const EffectSearch& search, const ExplainReport& report) {
 }
 
 /// Whether what the fit left out may be what a law does to some of the poses: a step, a current that is
-/// switched. One that does more than a hundredth of the field is no law of a working rig.
+/// switched. One that does more than a hundredth of the field is no law of a working rig. Where so many poses
+/// contradict the others that none was left out, the fit has all readings already.
 bool may_be_a_law(const fit::joint::JointFit& fit) {
   constexpr double kPoses = 4, kOfField = 0.01;
+  if (fit.outliers.empty()) return false;
   if (fit.contradicting * static_cast<double>(fit.problem.poses.size()) < kPoses) return false;
   return std::all_of(fit.outliers.begin(), fit.outliers.end(), [&](const fit::OutlierNode& node) {
     const fit::joint::JointPose& pose = fit.problem.poses.at(node.place);
@@ -103,6 +108,13 @@ bool may_be_a_law(const fit::joint::JointFit& fit) {
 /// The residual after the last round.
 double left_nT(const ExplainReport& report) {
   return report.rounds.empty() ? report.residual_nT : report.rounds.back().rms_after_nT;
+}
+
+/// Bad data have no law: what was asked about stays as it was.
+void condemn(const EffectSearch& search, ExplainReport& report) {
+  report.rounds.clear(), report.next.clear();
+  report.model = search.given;
+  report.finding = report.left = Finding::bad_data;
 }
 
 Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& options, double most_left_out) {
@@ -137,12 +149,12 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   const Asked first{.dof = criticism.dof, .reference = criticism.noise.reference};
   if (const auto exchange = tests::exchange_in_run(table, options.fit.field_nT)) {
     out.notes.emplace_back(SensorsExchanged{*exchange});
-    out.finding = Finding::bad_data;
+    condemn(search, out);
     return out;
   }
   if (bad_data(search.fit, criticism, search.joint.table_sd_rad, out.notes) ||
       !add_rounds(options.rounds, search, out)) {
-    out.finding = Finding::bad_data;
+    condemn(search, out);
     return out;
   }
   bool memory = memory_may_be_it(search, out);
@@ -170,8 +182,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
                                                                                     : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
   if (out.finding == Finding::bad_data) {
-    out.rounds.clear(), out.next.clear();
-    out.model = search.given;
+    condemn(search, out);
   } else if (!search.unknown.empty() || wandering_describes) {
     out.finding = out.rounds.empty() ? Finding::unknown : Finding::partial;
   }
@@ -198,6 +209,12 @@ std::string_view to_string(Finding finding) {
       return "BAD-DATA";
   }
   return "";
+}
+
+const Round* ExplainReport::open_round() const {
+  const auto open =
+      std::find_if(rounds.begin(), rounds.end(), [](const Round& round) { return !round.possible.empty(); });
+  return open == rounds.end() ? nullptr : &*open;
 }
 
 /// A law that accounts for what the fit left out outranks leaving it out: with all readings in, the law

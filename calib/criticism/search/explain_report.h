@@ -52,11 +52,13 @@ struct ExplainReport {
   std::vector<tests::Detectable> detectable{};  ///< beside the model after the rounds
   std::vector<tests::Untestable> untestable{};
   std::optional<tests::ConfusionMatrix> confusion{};  ///< of the model that was asked about
-  std::vector<design::NextMeasurement> next{};        ///< for the first name, best first
+  std::vector<design::NextMeasurement> next{};        ///< for the open round or else the first, best first
   std::vector<ExplainNote> notes{};                   ///< the same may stand there twice
   std::vector<effects::EffectPtr> model{};            ///< effects of the last fit
   std::shared_ptr<const fit::joint::JointFit>
       fit{};  ///< of the model that was asked about; points into the pose table
+  /// The first round in whose place another effect could stand; null when there is none.
+  [[nodiscard]] const Round* open_round() const;
 };
 
 }  // namespace mgtd::calib::criticism::search

@@ -59,9 +59,10 @@ ImproveStop stop_of(const ExplainReport& explained) {
 
 }  // namespace
 
-Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options) {
+Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options,
+                              const std::vector<tests::CandidateEffect>& also) {
   const auto explained =
-      explain(table, {.fit = options, .rounds = static_cast<int>(kImproveRounds), .candidate_effects = {}});
+      explain(table, {.fit = options, .rounds = static_cast<int>(kImproveRounds), .also = also});
   if (!explained) return tl::unexpected(explained.error());
   ImproveReport out{
       .finding = explained->left, .stopped = stop_of(*explained), .notes = explained->notes, .fit = {}};

@@ -49,6 +49,8 @@ struct ImproveReport {
   fit::FitReport fit;                      ///< with everything that was added
 };
 
-[[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options);
+/// `also`: candidates beside those of the library.
+[[nodiscard]] Result<ImproveReport> improve(const PoseTable& table, const fit::FitOptions& options,
+                                            const std::vector<tests::CandidateEffect>& also = {});
 
 }  // namespace mgtd::calib::criticism::search

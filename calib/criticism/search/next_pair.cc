@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "calib/criticism/tests/detectable.h"
 #include "calib/design/actions.h"
@@ -88,13 +89,24 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<design:
   return out;
 }
 
-/// The first round's winner, where something else could stand in its place.
-std::optional<tests::Candidate> open_question(const ExplainReport& report) {
-  if (report.rounds.empty()) return std::nullopt;
-  const tests::Candidate& winner = report.rounds.front().added;
-  const bool open = std::any_of(winner.alternatives.begin(), winner.alternatives.end(),
-                                [](const tests::Alternative& alternative) { return alternative.possible; });
-  return open ? std::optional(winner) : std::nullopt;
+bool is_open(const Round& round) {
+  const std::vector<tests::Alternative>& others = round.added.alternatives;
+  return std::any_of(others.begin(), others.end(),
+                     [](const tests::Alternative& alternative) { return alternative.possible; });
+}
+
+/// A winner in whose place something else could stand, and the effects beside which that was asked.
+struct OpenQuestion {
+  tests::Candidate winner;
+  std::vector<effects::EffectPtr> beside;
+};
+
+/// Of the first round that is open.
+std::optional<OpenQuestion> open_question(const ExplainReport& report,
+                                          const std::vector<effects::EffectPtr>& given) {
+  const auto open = std::find_if(report.rounds.begin(), report.rounds.end(), is_open);
+  if (open == report.rounds.end()) return std::nullopt;
+  return OpenQuestion{open->added, open == report.rounds.begin() ? given : std::prev(open)->model};
 }
 
 NothingToSettle nothing_to_settle(const ExplainReport& report) {
@@ -122,30 +134,32 @@ Result<NextReport> next_after(const ExplainReport& explained, const PoseTable& t
                               const std::optional<std::pair<std::string, std::string>>& pair) {
   NextReport out;
   out.finding = explained.finding;
-  std::optional<tests::Candidate> asked = open_question(explained);
+  std::optional<OpenQuestion> open = open_question(explained, options.fit.effects);
   if (pair) {
     auto a = candidate_of(explained, pair->first);
     if (!a) return tl::unexpected(a.error());
     auto b = candidate_of(explained, pair->second);
     if (!b) return tl::unexpected(b.error());
     if ((*b)->d > (*a)->d) std::swap(*a, *b);  // the one that the run rather speaks for is taken as true
-    asked = sized(**a, out.assumed);
-    asked->alternatives = {against(**b)};
+    open = {sized(**a, out.assumed), options.fit.effects};
+    open->winner.alternatives = {against(**b)};
   }
-  if (!asked) {
+  if (!open) {
     out.nothing_to_settle = nothing_to_settle(explained);
     return out;
   }
+  const tests::Candidate& asked = open->winner;
   const auto hardest =
-      std::min_element(asked->alternatives.begin(), asked->alternatives.end(),
+      std::min_element(asked.alternatives.begin(), asked.alternatives.end(),
                        [](const tests::Alternative& a, const tests::Alternative& b) {
                          return std::pair(!a.possible, a.p_right) < std::pair(!b.possible, b.p_right);
                        });
-  out.effect = asked->spec, out.alternative = hardest->spec, out.d = asked->d;
-  const fit::joint::JointOptions joint = fit::joint::joint_options(options.fit);
+  out.effect = asked.spec, out.alternative = hardest->spec, out.d = asked.d;
+  fit::joint::JointOptions joint = fit::joint::joint_options(options.fit);
+  joint.effects = open->beside;
   const auto fit = fit::joint::fit_joint(table, joint);
   if (!fit) return tl::unexpected(fit.error());
-  const design::NextMenu found = design::next_measurements(table, *fit, joint, *asked);
+  const design::NextMenu found = design::next_measurements(table, *fit, joint, asked);
   out.steps = steps_of(table, found.steps, *fit);
   out.none_helps = found.steps.empty();
   out.p_right_before = found.p_right_before;

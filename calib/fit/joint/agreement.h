@@ -11,9 +11,10 @@
 /// fitted.
 namespace mgtd::calib::fit::joint {
 
-/// Ratio of the residual's rms to the rms that its median implies, above which a few readings are far off.
-/// Noise with heavy tails (Student's t with three degrees of freedom) reaches 1.6, a smooth law that the
-/// model misses 2.
+/// Ratio of the residual's rms to the rms that its median implies: noise with heavy tails (Student's t with
+/// three degrees of freedom) reaches 1.6, a smooth law that the model misses kTailsOfLaw. Above kMaxTails a
+/// few readings are far off.
+inline constexpr double kTailsOfLaw = 2;
 inline constexpr double kMaxTails = 3;
 
 /// How far the readings that were kept scatter.

@@ -45,6 +45,22 @@ TEST(Sentence, AnEffectThatWouldBeSeenAtNoSizeIsToldSo) {
             "at no size: what is in the model takes it up");
 }
 
+TEST(NamesText, TellsWhichNameIsOpen) {
+  criticism::search::ExplainReport report;
+  report.finding = criticism::search::Finding::ambiguous;
+  report.rounds.resize(1);
+  report.rounds[0].added.effect = "axis.cubic";
+  report.rounds[0].possible = {"axis.transverse"};
+  EXPECT_EQ(names_text(report), "axis.cubic or axis.transverse");
+  report.rounds.resize(3);
+  report.rounds[1].added.effect = "site.gradient";
+  report.rounds[2].added.effect = "axis.quadratic";
+  EXPECT_EQ(names_text(report), "site.gradient, axis.quadratic; axis.cubic or axis.transverse");
+  report.finding = criticism::search::Finding::partial;
+  report.named = {"axis.cubic", "site.gradient"};
+  EXPECT_EQ(names_text(report), "axis.cubic, site.gradient");
+}
+
 TEST(Sentence, SaysWhatWasLeftOut) {
   criticism::search::ExplainReport report;
   EXPECT_THAT(sentence(report), Not(HasSubstr("left out")));

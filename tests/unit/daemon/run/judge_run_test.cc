@@ -43,6 +43,7 @@ ExplainReport ambiguous() {
   ExplainReport out;
   out.finding = Finding::ambiguous;
   out.named = {"a", "b"};
+  out.rounds.push_back({.added = {.effect = "a"}, .possible = {"b"}});
   return out;
 }
 

@@ -50,6 +50,27 @@ TEST(NextPair, WhatIsTheSitesStaysBehindWhereTheRigIsMoved) {
     EXPECT_GE(s.measurement.p_right_after, s.measurement.p_right_before) << s.measurement.action;
 }
 
+TEST(NextPair, AQuestionThatALaterRoundLeavesOpenIsAskedToo) {
+  // The drift is sure, and comes first; what remains beside it has two names in one field strength.
+  const Hidden drift_and_square = [](const Pose& pose, int i, int a, const Eigen::Vector3d& v) {
+    if (i == 3 && a == 2) return 40 * *pose.t_s / 3600;
+    return i == 1 && a == 0 ? 6 * std::pow(v[0] / 5e4, 2) : 0.0;
+  };
+  const PoseTable table = hidden_run({.hidden = drift_and_square}, 4);
+  const auto explained = criticism::search::explain(table, {});
+  ASSERT_TRUE(explained);
+  ASSERT_EQ(explained->finding, criticism::search::Finding::ambiguous);
+  ASSERT_EQ(explained->rounds.front().added.effect, "axis.offset.drift");
+  ASSERT_TRUE(explained->rounds.front().possible.empty());
+  ASSERT_NE(explained->open_round(), nullptr);
+  ASSERT_FALSE(explained->next.empty());
+  const auto next = criticism::search::next_after(*explained, table, {}, std::nullopt);
+  ASSERT_TRUE(next) << next.error().text();
+  EXPECT_EQ(next->effect, explained->open_round()->added.spec);
+  EXPECT_NEAR(next->p_right_before, 0.5, 1e-3) << "the drift is in the model of the question";
+  EXPECT_NEAR(explained->next.front().p_right_before, next->p_right_before, 1e-3);
+}
+
 TEST(NextPair, APairThatIsAskedAboutAndTheVerdictsOwnGiveOneAnswer) {
   const Hidden square = [](const Pose&, int i, int a, const Eigen::Vector3d& v) {
     return i == 1 && a == 0 ? 6 * std::pow(v[0] / 5e4, 2) : 0.0;
