@@ -73,7 +73,7 @@ void add_diff(CLI::App& app, Session& session) {
   command->footer(kDiffHelp);
   command->add_option("RUN_A", args->a, "*.mgtrun, a pose table in CSV, or a CAL.json")->required();
   command->add_option("RUN_B", args->b, "the later one")->required();
-  args->flags = add_fit_flags(command);
+  args->flags = add_fit_flags_of_several(command);
 }
 
 }  // namespace mgtd::daemon::cli

@@ -92,15 +92,20 @@ void add_table_flag(CLI::App* command, FitFlags& flags) {
       ->check(above_zero(10, "deg"));
 }
 
-std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
+std::shared_ptr<FitFlags> add_fit_flags_of_several(CLI::App* command) {
   auto f = std::make_shared<FitFlags>();
   command->add_option("--method", f->method, "simplified, two-step or joint")
       ->check(CLI::IsMember({"simplified", "two-step", "joint"}))
       ->capture_default_str();
   add_with(command, *f);
+  add_site_flags(command, *f);
+  return f;
+}
+
+std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command) {
+  auto f = add_fit_flags_of_several(command);
   add_further(command, *f);
   add_without(command, *f);
-  add_site_flags(command, *f);
   return f;
 }
 

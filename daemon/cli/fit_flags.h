@@ -27,6 +27,9 @@ struct FitFlags {
 };
 
 std::shared_ptr<FitFlags> add_fit_flags(CLI::App* command);
+/// The same for commands that fit several files, each by itself: numbers of poses and further runs belong to
+/// one.
+std::shared_ptr<FitFlags> add_fit_flags_of_several(CLI::App* command);
 /// The same for commands that only know the joint fit.
 std::shared_ptr<FitFlags> add_model_flags(CLI::App* command);
 /// The same for commands about the model that a run file keeps, and no other.

@@ -110,7 +110,7 @@ void add_history(CLI::App& app, Session& session) {
   command->add_option("CALIBRATION", args->files,
                       "CAL.json, *.mgtrun or pose tables; none: those of the daemon");
   command->add_option("--figure", args->figure, "write the figure to this file, as SVG");
-  args->flags = add_fit_flags(command);
+  args->flags = add_fit_flags_of_several(command);
 }
 
 }  // namespace mgtd::daemon::cli

@@ -9,6 +9,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/formulas.h"
 #include "daemon/cli/remaining_law.h"
 #include "daemon/cli/work_progress.h"
 
@@ -59,8 +60,9 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());
+  const auto formulas = formulas_of(*source, *options);
   auto improved = with_progress("improve", *options, [&](const calib::fit::FitOptions& told) {
-    return calib::criticism::search::improve(source->table, told);
+    return calib::criticism::search::improve(source->table, told, formulas);
   });
   if (!improved) return report(session, improved.error());
   acquire::name_instruments(improved->fit.calibration, args.run);

@@ -12,6 +12,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/formulas.h"
 #include "daemon/cli/next_hypotheses.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/plan/plan_from_list.h"
@@ -44,7 +45,7 @@ struct NextArguments {
 /// Where the verdict leaves nothing open: an effect of the model against the first that could stand in its
 /// place, both asked about beside the others of the model.
 Result<calib::criticism::search::NextReport> next_about(
-    const PoseTable& table, calib::fit::FitOptions options,
+    const PoseTable& table, calib::criticism::search::ExplainOptions search,
     const std::vector<calib::criticism::search::Choice>& doubts,
     calib::criticism::search::NextReport otherwise) {
   const auto open = std::find_if(
@@ -54,9 +55,10 @@ Result<calib::criticism::search::NextReport> next_about(
     if (!doubts.empty()) otherwise.nothing_to_settle.reset(), otherwise.none_helps = false;
     return otherwise;
   }
-  std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) { return e->spec() == open->spec; });
+  std::erase_if(search.fit.effects,
+                [&](const calib::effects::EffectPtr& e) { return e->spec() == open->spec; });
   return calib::criticism::search::next_of(
-      table, {.fit = options},
+      table, search,
       std::pair{std::string(calib::effects::family_name(open->spec)),
                 std::string(calib::effects::family_name(open->alternatives.front()))});
 }
@@ -84,10 +86,11 @@ Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& 
   using calib::criticism::search::Finding;
   const auto doubted = question_in_doubt(doubts, source, options);
   if (!doubted || !doubted->hypotheses.empty()) return among(doubted, source.table);
-  auto next = calib::criticism::search::next_of(source.table, {.fit = options}, std::nullopt);
+  const calib::criticism::search::ExplainOptions search{.fit = options, .also = formulas_of(source, options)};
+  auto next = calib::criticism::search::next_of(source.table, search, std::nullopt);
   if (!next) return next;
   if (next->effect.empty() && !doubts.empty())
-    return next_about(source.table, options, doubts, *std::move(next));
+    return next_about(source.table, search, doubts, *std::move(next));
   if (next->finding == Finding::bad_data) return next;
   const bool unnamed =
       next->effect.empty() || next->finding == Finding::unknown || next->finding == Finding::partial;
@@ -110,7 +113,8 @@ Report answer(const NextArguments& args, const store::PoseSource& source,
   }
   if (!names_of_the_library(args.pair, source))
     return among(question_of(args.pair, source, options), source.table);
-  return calib::criticism::search::next_of(source.table, {.fit = options},
+  return calib::criticism::search::next_of(source.table,
+                                           {.fit = options, .also = formulas_of(source, options)},
                                            std::pair{args.pair[0], args.pair[1]});
 }
 

@@ -173,6 +173,7 @@ std::string report_command(const ReportWishes& w, const FitFlags& f) {
     if (!value.empty()) out += fmt::format(" {} {}", name, shell_word(value));
   };
   for (const std::string& further : f.further) text("--and", further);
+  text("--without", f.without);
   for (const std::string& effect : f.with) text("--with", effect);
   for (const auto& [name, value] : field_options(f)) text(name.c_str(), value);
   text("--operator", w.operator_name);

@@ -109,6 +109,14 @@ TEST_F(Loop, WhatIsNeededIsNotDroppedUnlessForced) {
   EXPECT_THAT(ask({"model", run_file()}).at("model"), IsEmpty());
 }
 
+TEST_F(Loop, WhatBelongsToOneRunIsNotAskedOfSeveral) {
+  for (const char* command : {"diff", "history"}) {
+    const Finished several = mgt({command, run_file(), run_file(), "--without", "3"});
+    EXPECT_EQ(several.exit_code, 2) << command;
+    EXPECT_THAT(several.err, HasSubstr("--without")) << command;
+  }
+}
+
 TEST_F(Loop, ARefusalHasItsRemedyAndChangesNothing) {
   const Finished csv = mgt({"add", kEffect, file("poses.csv")});
   EXPECT_EQ(csv.exit_code, 2);
@@ -147,6 +155,8 @@ TEST_F(Loop, AFormulaIsExaminedKeptAndUsedByItsName) {
   const Finished explain = mgt({"explain", run_file(), "--json"});
   EXPECT_THAT(explain.err, HasSubstr("warmth was suggested by this run"));
   EXPECT_THAT(explain.out, HasSubstr("\"effect\":\"warmth\""));
+  EXPECT_THAT(mgt({"improve", run_file(), "--no-law"}).err, HasSubstr("warmth was suggested by this run"));
+  EXPECT_THAT(mgt({"next", run_file()}).err, HasSubstr("warmth was suggested by this run"));
   ASSERT_EQ(mgt({"add", "warmth", run_file()}).exit_code, 0);
   ASSERT_EQ(mgt({"fit", run_file(), "-o", file("cal.json")}).exit_code, 0);
   EXPECT_THAT(whole_file(file("cal.json")), HasSubstr("expr=T_degC - 20"));

@@ -81,13 +81,15 @@ TEST(ReportCommand, HoldsEveryOptionThatChangesTheResult) {
   FitFlags flags;
   flags.with = {"none"};
   flags.further = {"second run.csv"};
+  flags.without = "3,7-9";
   flags.field_nT = 50000;
   flags.seed = 7;
   EXPECT_EQ(
       report_command(
           {.run = "a.mgtrun", .output = "r.html", .operator_name = {}, .site = {}, .earlier = {"old.json"}},
           flags),
-      "mgt report a.mgtrun --and 'second run.csv' --with none --field 50000 --seed 7 --earlier old.json -o "
+      "mgt report a.mgtrun --and 'second run.csv' --without 3,7-9 --with none --field 50000 --seed 7 "
+      "--earlier old.json -o "
       "r.html");
 }
 
