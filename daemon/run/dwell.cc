@@ -8,6 +8,7 @@
 
 #include "calib/calibration/tensor.h"
 #include "calib/poses/pose_columns.h"
+#include "daemon/run/run_clock.h"
 
 namespace mgtd::daemon::run {
 namespace {
@@ -50,7 +51,6 @@ void Dwell::add(const EpochOrGap& item) {
     ++frozen_;
     return;
   }
-  if (!first_) first_ = epoch.t;
   y_nT_.push_back(y);
   seq_.push_back(epoch.seq);
 }
@@ -183,7 +183,7 @@ Result<Pose> Dwell::pose(const DwellPlace& place) const {
   }
   const Instant middle = begin_ + (end_ - begin_) / 2;
   pose.t_s = to_seconds(middle - place.run_start.mono);
-  pose.t_utc = WallTime{first_->wall.ns + (middle - first_->mono).count()};
+  pose.t_utc = wall_in_run(place.run_start, middle);
   if (place.stopped) pose.since_stop_s = to_seconds(middle - *place.stopped);
   pose.dwell_s = config_.length_s;
   pose.mount = place.mount;

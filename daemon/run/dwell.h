@@ -39,7 +39,7 @@ struct DwellPlace {
   int number{0};
   std::string set;
   std::optional<TableAngles> angles;
-  Stamp run_start;                 ///< origin of t_s
+  Stamp run_start;                 ///< origin of t_s, and its wall time (run_clock.h)
   std::optional<Instant> stopped;  ///< when the table came to rest
   std::optional<int> mount, sense;
 };
@@ -96,7 +96,6 @@ class Dwell {
   PerSensor<std::size_t> repeats_;
   std::size_t heard_{0}, saturated_{0}, frozen_{0};
   bool past_end_{false};
-  std::optional<Stamp> first_;  ///< relates monotonic and wall time
 };
 
 }  // namespace mgtd::daemon::run

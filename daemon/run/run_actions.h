@@ -32,7 +32,8 @@ struct StorePose {
 struct DropPoses {
   std::vector<int> numbers;
 };
-/// What the table did since the last one. Not answered: a run does not depend on it.
+/// What the table did since the last one, on the wall clock of the run (run_clock.h). Not answered: a run
+/// does not depend on it.
 struct StorePath {
   std::vector<TableReading> readings;
 };

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/run/run_clock.h"
+
 namespace mgtd::daemon::run {
 namespace {
 
@@ -197,7 +199,10 @@ void RunFsm::finish(RunState state, const std::string& message, const std::strin
 }
 
 void RunFsm::flush_path() {
-  if (auto path = table_.take_path(); !path.empty()) act(StorePath{std::move(path)});
+  std::vector<TableReading> path = table_.take_path();
+  if (path.empty()) return;
+  for (TableReading& reading : path) reading.arrival.wall = wall_in_run(run_start_, reading.arrival.mono);
+  act(StorePath{std::move(path)});
 }
 
 void RunFsm::publish() {

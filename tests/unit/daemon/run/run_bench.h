@@ -122,10 +122,11 @@ class RunBench {
   bool aborted{false};
   drivers::TableLimits limits;
   double t_s{0};
+  double clock_set_s{0};  ///< by so much the wall clock was set forward
 
   [[nodiscard]] Stamp now() const {
     return {Instant{from_seconds(1000 + t_s)},
-            WallTime{1'800'000'000'000'000'000 + from_seconds(t_s).count()}};
+            WallTime{1'800'000'000'000'000'000 + from_seconds(t_s + clock_set_s).count()}};
   }
 
   void send(const daemon::run::Event& event) {

@@ -64,6 +64,31 @@ TEST(RunFsm, StatesFollowOneAnother) {
                           RunState::dwelling, RunState::solving, RunState::done));
 }
 
+/// The poses and the way of the table stay as far apart as they were measured.
+TEST(RunFsm, AClockThatIsSetDuringTheRunMovesNothing) {
+  for (const double set_s : {-3600.0, 7200.0}) {
+    SCOPED_TRACE(set_s);
+    RunBench bench(bench_plan(4));
+    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 2; }));
+    bench.clock_set_s = set_s;
+    ASSERT_TRUE(ends(bench, RunState::done));
+    ASSERT_EQ(bench.stored.size(), 4U);
+    const Stamp begun = RunBench(bench_plan(4)).now();
+    for (const Pose& pose : bench.stored)
+      EXPECT_NEAR(to_seconds(Duration{pose.t_utc->ns - begun.wall.ns}), *pose.t_s, 1e-6) << pose.number;
+    std::size_t on_the_way = 0;
+    for (const Action& action : bench.log) {
+      const auto* const path = std::get_if<StorePath>(&action);
+      if (path == nullptr) continue;
+      for (const TableReading& reading : path->readings) {
+        EXPECT_EQ(reading.arrival.wall.ns - begun.wall.ns, (reading.arrival.mono - begun.mono).count());
+        ++on_the_way;
+      }
+    }
+    EXPECT_GT(on_the_way, 8U);
+  }
+}
+
 TEST(RunFsm, TheEstimateOfTheRestLearnsFromThePoses) {
   auto config = bench_config();
   config.pace.velocity_rad_per_s = to_rad(300);  // ten times what the table does
