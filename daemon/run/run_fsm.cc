@@ -147,6 +147,8 @@ void RunFsm::on(const FurtherPoses& further) {
   if (further.poses.empty()) return solve();
   progress_.extend(plan_, config_.pace);
   hands_.extend(plan_.poses.size());
+  if (const std::string other = identity_.exchanged(); !other.empty())
+    return hold(other + "; " + identity_.remedy());
   if (lost_.empty()) return go_on();
   enter(phase::Waiting{}, "waiting for " + lost_.begin()->first);
 }

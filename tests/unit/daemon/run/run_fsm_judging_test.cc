@@ -147,5 +147,29 @@ TEST(RunFsmJudging, ADeviceLostMeanwhileIsWaitedFor) {
   EXPECT_EQ(bench.stored.size(), 5U);
 }
 
+TEST(RunFsmJudging, ASensorExchangedMeanwhileIsNoticed) {
+  RunBench bench(bench_plan(3), until_explained());
+  ask_once(bench);
+  bench.judge_stalls = true;
+  const auto answers = [&](const std::string& identity) {
+    LinkHealth health;
+    health.state = LinkState::live;
+    health.identity = identity;
+    bench.send(daemon::run::LinkSeen{Slot::sensor(1), health});
+  };
+  answers("ObsDAQ, serial 7");
+  ASSERT_TRUE(bench.run_to(RunState::solving));
+  answers("ObsDAQ, serial 8");
+  bench.judge_stalls = false;
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  EXPECT_THAT(bench.status->message, ::testing::HasSubstr("serial number 8"));
+  EXPECT_FALSE(bench.fsm.possible(daemon::run::Request::resume));
+  answers("ObsDAQ, serial 7");
+  bench.send(daemon::run::Request::resume);
+  ASSERT_TRUE(bench.run(600));
+  EXPECT_EQ(bench.finished->state, RunState::done);
+  EXPECT_EQ(bench.stored.size(), 5U);
+}
+
 }  // namespace
 }  // namespace mgtd::test
