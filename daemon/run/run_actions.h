@@ -28,7 +28,7 @@ struct StopTable {};  ///< also of a table at rest; never refused
 struct StorePose {
   Pose pose;
 };
-/// Poses that rest on an entry that was wrong: they are measured again.
+/// Poses that rest on an entry that was wrong: they are measured again. Answered by PosesDropped.
 struct DropPoses {
   std::vector<int> numbers;
 };

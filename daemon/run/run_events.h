@@ -60,6 +60,12 @@ struct PoseStored {
   Result<void> result;
 };
 
+/// The answer to DropPoses.
+struct PosesDropped {
+  std::vector<int> numbers;
+  Result<void> result;
+};
+
 /// What a calibration from the poses stored so far would be worth. Comes when it is known, after some poses.
 struct AccuracyKnown {
   int poses{0};
@@ -88,8 +94,9 @@ struct CalibrationProposed {
   Result<void> result;
 };
 
-using Event = std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, AuxiliaryReading,
-                           TableReading, LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, ReadingsSay,
-                           PoseStored, AccuracyKnown, FurtherPoses, SolveDone, CalibrationProposed>;
+using Event =
+    std::variant<Tick, Request, ScaleEntered, Epoch, Gap, ScalarReading, AuxiliaryReading, TableReading,
+                 LinkSeen, DeviceLost, DeviceBack, DeviceFaulted, ReadingsSay, PoseStored, PosesDropped,
+                 AccuracyKnown, FurtherPoses, SolveDone, CalibrationProposed>;
 
 }  // namespace mgtd::daemon::run

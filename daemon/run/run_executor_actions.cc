@@ -19,14 +19,14 @@
 namespace mgtd::daemon::run {
 
 void RunExecutor::act(const DropPoses& action, Stamp) {
-  if (auto dropped = file_->remove_poses(action.numbers); !dropped) {
-    spdlog::error("poses to be measured again could not be taken out: {}", dropped.error().text());
-    return;
+  auto dropped = file_->remove_poses(action.numbers);
+  if (dropped) {
+    course_.dropped(action.numbers);
+    std::erase_if(poses_.poses, [&](const Pose& pose) {
+      return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
+    });
   }
-  course_.dropped(action.numbers);
-  std::erase_if(poses_.poses, [&](const Pose& pose) {
-    return std::find(action.numbers.begin(), action.numbers.end(), pose.number) != action.numbers.end();
-  });
+  run_.answer(PosesDropped{action.numbers, std::move(dropped)});
 }
 
 void RunExecutor::act(const StorePose& action, Stamp) {

@@ -106,8 +106,8 @@ void RunFsm::on(const LinkSeen& seen) {
 }
 
 void RunFsm::on(const PoseStored& stored) {
-  if (!unanswered_ || unanswered_->number != stored.number) return;
-  const Pose pose = *std::exchange(unanswered_, std::nullopt);
+  if (!disk_.unanswered || disk_.unanswered->number != stored.number) return;
+  const Pose pose = *std::exchange(disk_.unanswered, std::nullopt);
   published_.reset();
   if (!stored.result) {
     if (is_measuring(phase_))
@@ -126,6 +126,19 @@ void RunFsm::on(const PoseStored& stored) {
     checks_.push_back(*check);
   }
   if (in<phase::Storing>()) go_on();
+}
+
+void RunFsm::on(const PosesDropped& dropped) {
+  if (dropped.result) return;
+  disk_.undropped = dropped.numbers;
+  if (in<phase::Stopping>()) return;
+  if (in<phase::Judging>() || in<phase::Solving>()) act(CancelSolve{});
+  hold(
+      fmt::format("{} to be measured again but could not be taken out of the run file: {}; mgt run resume "
+                  "tries again",
+                  dropped.numbers.size() == 1 ? fmt::format("pose {} is", dropped.numbers.front())
+                                              : fmt::format("poses {} are", fmt::join(dropped.numbers, ", ")),
+                  dropped.result.error().text()));
 }
 
 void RunFsm::on(const AccuracyKnown& known) {

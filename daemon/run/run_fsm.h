@@ -52,10 +52,10 @@
 ///   suspends the dwell (field_guard.h); the pose is measured again, by itself, when the field was calm for
 ///   calm_s, and the run pauses when it does not become so within calm_max_s.
 /// - The table does not move between StorePose and its PoseStored.
-/// - A fault of a device, or a pose that cannot be stored, stops the table and pauses. A device that is lost
-///   stops the table; the pose is repeated when it comes back within lost_max_s, else the run fails.
-///   Meanwhile the run says what the link says. A table that is lost itself is stopped by its driver when it
-///   is back; until then it may still move, and the run says so.
+/// - A fault of a device, or a pose that cannot be stored or taken out again, stops the table and pauses. A
+///   device that is lost stops the table; the pose is repeated when it comes back within lost_max_s, else the
+///   run fails. Meanwhile the run says what the link says. A table that is lost itself is stopped by its
+///   driver when it is back; until then it may still move, and the run says so.
 /// - A sensor that is not the one that the active calibration was made with, by what the devices tell or by
 ///   what the stream concludes, pauses the run before its first pose, once: an operator who means it so
 ///   resumes. One that is not the one that this run began with pauses it for as long as it is there.
@@ -111,6 +111,7 @@ class RunFsm {
   void on(const DeviceFaulted& faulted);
   void on(const ReadingsSay& say);
   void on(const PoseStored& stored);
+  void on(const PosesDropped& dropped);
   void on(const AccuracyKnown& known);
   void on(const FurtherPoses& further);
   void on(const SolveDone& solved);
@@ -211,7 +212,11 @@ class RunFsm {
   bool preflight_passed_{false};
   std::vector<Check> checks_;
   std::map<std::string, std::string> lost_;  ///< devices and why, as their links know it
-  std::optional<Pose> unanswered_;           ///< whose PoseStored is awaited
+  struct Open {
+    std::optional<Pose> unanswered{};  ///< whose PoseStored is awaited
+    std::vector<int> undropped{};  ///< poses that could not be dropped; tried again before the run goes on
+  };
+  Open disk_;
   struct Known {
     std::optional<double> tensor_sd_nT_per_m;
     std::string judged;

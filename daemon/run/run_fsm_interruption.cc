@@ -45,7 +45,7 @@ Result<void> RunFsm::possible(Request request) const {
       return {};
     case Request::redo:
       if (measured) return refuse("all poses are measured", "wait, or abort");
-      if (unanswered_) return refuse("a pose is being stored", "ask again in a moment");
+      if (disk_.unanswered) return refuse("a pose is being stored", "ask again in a moment");
       if (hands_.entered() || (config_.by_hand && progress_.last())) return {};
       return refuse("nothing was entered by hand yet that could be entered again", "");
     case Request::finish:

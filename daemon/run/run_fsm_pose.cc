@@ -15,8 +15,9 @@ namespace mgtd::daemon::run {
 
 void RunFsm::go_on() {
   const auto next = progress_.next();
-  if (unanswered_) {
-    enter(phase::Storing{}, fmt::format("storing pose {}", unanswered_->number));
+  if (!disk_.undropped.empty()) act(DropPoses{std::exchange(disk_.undropped, {})});
+  if (disk_.unanswered) {
+    enter(phase::Storing{}, fmt::format("storing pose {}", disk_.unanswered->number));
   } else if (next && !preflight_passed_) {
     begin_preflight();
   } else if (next && !table_.referenced()) {
@@ -251,7 +252,7 @@ Result<void> RunFsm::undisturbed(const Pose& pose) const {
 
 void RunFsm::store(Pose pose) {
   flush_path();
-  unanswered_ = pose;
+  disk_.unanswered = pose;
   enter(phase::Storing{}, fmt::format("storing pose {}", pose.number));
   act(StorePose{std::move(pose)});
 }

@@ -216,6 +216,8 @@ class RunBench {
     table.moving = false;
   }
   void carry_out(const daemon::run::DropPoses& drop) {
+    dropping_ = drop.numbers;
+    if (disk_full) return;
     dropped += static_cast<int>(drop.numbers.size());
     std::erase_if(stored, [&](const Pose& p) {
       return std::find(drop.numbers.begin(), drop.numbers.end(), p.number) != drop.numbers.end();
@@ -275,6 +277,7 @@ class RunBench {
   void carry_out(const daemon::run::Record&) {}
 
   void answer() {
+    if (!dropping_.empty()) send(daemon::run::PosesDropped{std::exchange(dropping_, {}), disk_answer()});
     if (storing_ && !disk_stalls && t_s >= answer_at_s_) {
       const int number = storing_->number;
       if (!disk_full) {
@@ -282,9 +285,7 @@ class RunBench {
         stored.push_back(*storing_);
       }
       storing_.reset();
-      send(daemon::run::PoseStored{
-          number,
-          disk_full ? fail(ErrorCode::io, "no space left on device", "free some space") : Result<void>{}});
+      send(daemon::run::PoseStored{number, disk_answer()});
     }
     if (solve_at_s_ && !solve_stalls && t_s >= *solve_at_s_) {
       solve_at_s_.reset();
@@ -300,6 +301,10 @@ class RunBench {
           propose_fails ? fail(ErrorCode::io, "no space left on device", "free some space")
                         : Result<void>{}});
     }
+  }
+
+  [[nodiscard]] Result<void> disk_answer() const {
+    return disk_full ? fail(ErrorCode::io, "no space left on device", "free some space") : Result<void>{};
   }
 
   void sample() {
@@ -341,6 +346,7 @@ class RunBench {
   int ticks_{0};
   PerSensor<Eigen::Vector3d> last_nT_{};
   std::optional<Pose> storing_;
+  std::vector<int> dropping_;
   double answer_at_s_{0};
   std::optional<double> judge_at_s_, solve_at_s_, propose_at_s_;
 };

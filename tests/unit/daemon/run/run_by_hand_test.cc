@@ -176,6 +176,49 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   EXPECT_EQ(bench.stored.back().number, 3);
 }
 
+/// What the operator took back is neither fitted nor in the way of its new measurement.
+TEST(RunByHand, APoseThatTheDiskDoesNotDropPausesTheRun) {
+  RunBench bench(hand_plan(12), hand_config());
+  Operator hands;
+  for (std::size_t k = 1; k <= 3; ++k) {
+    ASSERT_TRUE(to_prompt(bench));
+    hands.serve(bench);
+    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == k; }));
+  }
+  ASSERT_TRUE(to_prompt(bench));
+  bench.disk_full = true;
+  bench.send(daemon::run::Request::redo);
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  EXPECT_THAT(bench.status->message, HasSubstr("pose 3 is to be measured again but could not be taken out"));
+  EXPECT_THAT(bench.status->message, HasSubstr("free some space"));
+  bench.send(daemon::run::Request::finish);
+  ASSERT_TRUE(bench.run_to(RunState::paused)) << "its poses are not fitted with the wrong one among them";
+  EXPECT_EQ(bench.proposals, 0);
+  bench.disk_full = false;
+  bench.send(daemon::run::Request::resume);
+  ASSERT_TRUE(bench.run(600));
+  EXPECT_EQ(bench.finished->state, RunState::done);
+  EXPECT_EQ(bench.stored.size(), 2U);
+}
+
+TEST(RunByHand, APoseThatTheDiskDropsLaterIsMeasuredAgain) {
+  RunBench bench(hand_plan(12), hand_config());
+  Operator hands;
+  ASSERT_TRUE(to_prompt(bench));
+  hands.serve(bench);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  bench.disk_full = true;
+  bench.send(daemon::run::Request::redo);
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  bench.disk_full = false;
+  bench.send(daemon::run::Request::resume);
+  ASSERT_TRUE(to_prompt(bench));
+  EXPECT_TRUE(bench.stored.empty());
+  EXPECT_EQ(bench.status->prompt->pose, 1);
+  hands.serve(bench);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+}
+
 /// The last entry is that of the pose under way, which the pause forgot: the pose before stays.
 TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
   RunBench bench(hand_plan(12), hand_config());

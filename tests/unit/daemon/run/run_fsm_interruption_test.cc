@@ -272,6 +272,7 @@ TEST(RunFsmInterruption, EveryEventIsHandledInEveryState) {
                               DeviceFaulted{Slot::sensor(0), {bench.now(), "what", "remedy"}},
                               PoseStored{99, {}},
                               PoseStored{1, fail(ErrorCode::io, "full")},
+                              PosesDropped{{1}, fail(ErrorCode::io, "full")},
                               SolveDone{fail(ErrorCode::internal, "no")},
                               CalibrationProposed{fail(ErrorCode::io, "full")}};
   };
