@@ -52,6 +52,7 @@ store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
   out.table_sd_rad = to_rad(c.table_sd_deg);
   out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
   out.until_explained_min = r.until_explained_min;
+  out.retries = r.retries;
   return out;
 }
 
@@ -145,12 +146,11 @@ Result<plan::RunPlan> RunExecutor::plan(const RunRequest& request) const {
 
 plan::Pace RunExecutor::pace() const { return {}; }
 
-RunConfig RunExecutor::run_config(const std::string& run_id, const RunRequest& request) const {
+RunConfig RunExecutor::run_config(const std::string& run_id) const {
   RunConfig out = run::run_config(config_, hooks_.limits());
   out.run_id = run_id;
   if (const auto active = store_.active(); active && *active)
     out.calibrated = acquire::instruments_among((*active)->checks);
-  out.retries = request.retries.value_or(out.retries);
   out.pace = pace();
   return out;
 }
@@ -172,7 +172,6 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
   if (auto there = table_is_there(); !there) return there;
   auto planned = plan(request);
   if (!planned) return tl::unexpected(planned.error());
-  failed_.reset();
   const std::string id = run_id_at(now.wall);
   auto file = store::RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
                                                                    .rig = config_.rig_name,
@@ -188,7 +187,8 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
     if (auto put = file->append_model_step({now.wall, "mgtd configuration", "add", effect, "{}"}); !put)
       return put;
   }
-  begin(*std::move(file), run_config(id, request), *std::move(planned), now, std::nullopt);
+  failed_.reset();
+  begin(*std::move(file), run_config(id), *std::move(planned), now, std::nullopt);
   return {};
 }
 
@@ -196,8 +196,10 @@ void RunExecutor::begin(store::RunFile file, RunConfig config, plan::RunPlan pla
                         const std::optional<EarlierLife>& earlier) {
   file_ = std::move(file);
   given_up_.reset();
-  config.until_tensor_sd_nT_per_m = file_->header().options.until_tensor_sd_nT_per_m;
-  config.until_explained = file_->header().options.until_explained_min.has_value();
+  const store::RunOptions& wanted = file_->header().options;
+  config.until_tensor_sd_nT_per_m = wanted.until_tensor_sd_nT_per_m;
+  config.until_explained = wanted.until_explained_min.has_value();
+  config.retries = wanted.retries.value_or(config.retries);
   judgements_ = judgements_of(*file_);
   auto stored = file_->poses();
   poses_ = stored ? *std::move(stored) : PoseTable{};
@@ -254,7 +256,7 @@ Result<void> RunExecutor::resume_interrupted(Stamp now) {
   }
   if (const auto known = file->checks(acquire::kInstrumentsStage))
     earlier.instruments = acquire::instruments_among(*known);
-  RunConfig config = run_config(file->header().run_id, {});
+  RunConfig config = run_config(file->header().run_id);
   interrupted_.reset();
   begin(*std::move(file), std::move(config), *std::move(plan), now, earlier);
   return {};

@@ -82,7 +82,7 @@ class RunExecutor {
     int stored{0}, planned{0};
   };
 
-  [[nodiscard]] RunConfig run_config(const std::string& run_id, const RunRequest& request) const;
+  [[nodiscard]] RunConfig run_config(const std::string& run_id) const;
   [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
                                                      const store::RunFile& file) const;
   [[nodiscard]] Result<void> table_is_there() const;

@@ -94,6 +94,7 @@ class RunFsm {
   [[nodiscard]] RunStatus status(Instant now) const;
   [[nodiscard]] bool ended() const { return in<phase::Ended>() != nullptr; }
   [[nodiscard]] const plan::RunPlan& plan() const { return plan_; }
+  [[nodiscard]] const RunConfig& config() const { return config_; }
 
  private:
   // What happens.

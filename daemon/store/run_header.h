@@ -20,6 +20,7 @@ struct RunOptions {
   std::optional<double> table_sd_rad;
   std::optional<double> until_tensor_sd_nT_per_m;  ///< at which the run was to end; a resumed one still does
   std::optional<double> until_explained_min;       ///< that it may go on after its plan
+  std::optional<int> retries;                      ///< of one pose, where the configuration's are not meant
   PerSensor<std::string> sensor_names{"s1", "s2", "s3", "s4"};  ///< as many as the geometry has places
 };
 

@@ -90,6 +90,7 @@ Meta to_meta(const RunHeader& h) {
   put(meta, "table_sd_rad", h.options.table_sd_rad);
   put(meta, "until_tensor_sd_nT_per_m", h.options.until_tensor_sd_nT_per_m);
   put(meta, "until_explained_min", h.options.until_explained_min);
+  if (h.options.retries) meta["retries"] = fmt::format("{}", *h.options.retries);
   for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i)
     meta[fmt::format("s{}_name", i + 1)] = h.options.sensor_names[i];
   return meta;
@@ -131,6 +132,8 @@ Result<RunHeader> from_meta(const Meta& meta, const std::string& file) {
   h.options.table_sd_rad = number_of(meta, "table_sd_rad");
   h.options.until_tensor_sd_nT_per_m = number_of(meta, "until_tensor_sd_nT_per_m");
   h.options.until_explained_min = number_of(meta, "until_explained_min");
+  if (const auto retries = parse_integer(text_of(meta, "retries")))
+    h.options.retries = static_cast<int>(*retries);
   for (std::size_t i = 0; i < h.options.sensor_names.size(); ++i) {
     const std::string name = text_of(meta, fmt::format("s{}_name", i + 1));
     if (!name.empty()) h.options.sensor_names[i] = name;

@@ -13,14 +13,14 @@ namespace {
 /// An executor whose fits wait for their turn on the worker, and then only note whether they were told to
 /// stop.
 struct HeldFit {
-  HeldFit() {
+  explicit HeldFit(const RunRequest& request = {}) {
     worker.run(
         [open = gate.get_future()](std::stop_token) mutable {
           open.wait();
           return 0;
         },
         [](int) {});
-    EXPECT_TRUE(executor.start({}, now));
+    EXPECT_TRUE(executor.start(request, now));
   }
   ~HeldFit() { let_it_begin(); }
   void let_it_begin() {
@@ -57,6 +57,20 @@ struct HeldFit {
   store::Worker worker{io};
   CurrentRun run{[](const Action&, Stamp) {}};
   RunExecutor executor{config, dir / "", store, worker, run, hooks()};
+};
+
+/// Another daemon on the files of this one.
+struct Later {
+  explicit Later(HeldFit& held)
+      : before(held),
+        executor(before.config, before.dir / "", before.store, before.worker, run, before.hooks()) {
+    before.executor.abandon();
+    executor.find_interrupted();
+  }
+  ~Later() { before.let_it_begin(); }  // its jobs answer it
+  HeldFit& before;
+  CurrentRun run{[](const Action&, Stamp) {}};
+  RunExecutor executor;
 };
 
 TEST(RunExecutor, TellsWhatTheRunWroteDown) {
@@ -118,19 +132,37 @@ TEST(RunExecutor, AResumedRunHasItsCourseAgain) {
   measuring.state = RunState::suspended;
   held.executor.carry_out(PublishStatus{measuring}, held.now);
   const std::string id = held.executor.course().run_id;
-  held.executor.abandon();
 
-  CurrentRun run{[](const Action&, Stamp) {}};
-  RunExecutor later{held.config, held.dir / "", held.store, held.worker, run, held.hooks()};
-  later.find_interrupted();
-  const auto resumed = later.request(Request::resume, held.now);
+  Later later(held);
+  const auto resumed = later.executor.request(Request::resume, held.now);
   ASSERT_TRUE(resumed) << resumed.error().text();
-  const RunCourse course = later.course();
+  const RunCourse course = later.executor.course();
   EXPECT_EQ(course.run_id, id);
   EXPECT_EQ(course.poses.at(0).state, CourseState::measured);
   ASSERT_EQ(course.disturbances.size(), 1U);
   EXPECT_EQ(course.disturbances[0].change_nT, 3);
   EXPECT_EQ(course.disturbances[0].then, "the daemon ended before the field was calm");
+}
+
+TEST(RunExecutor, AResumedRunKeepsItsRetries) {
+  HeldFit held({.retries = 7});
+  EXPECT_EQ(held.run.fsm()->config().retries, 7);
+  RunStatus measuring;
+  measuring.state = RunState::dwelling;
+  held.executor.carry_out(PublishStatus{measuring}, held.now);
+  Later later(held);
+  ASSERT_TRUE(later.executor.request(Request::resume, held.now));
+  EXPECT_EQ(later.run.fsm()->config().retries, 7);
+}
+
+TEST(RunExecutor, ARunThatCannotBeginLeavesTheFailedOneToBeResumed) {
+  HeldFit held;
+  held.executor.carry_out(Finish{RunState::failed, "s2 did not come back"}, held.now);
+  Later later(held);
+  EXPECT_EQ(later.executor.status(held.now.mono).state, RunState::failed);
+  ASSERT_FALSE(later.executor.start({}, held.now)) << "its file exists already";
+  EXPECT_EQ(later.executor.status(held.now.mono).state, RunState::failed);
+  EXPECT_TRUE(later.executor.request(Request::resume, held.now));
 }
 
 }  // namespace
