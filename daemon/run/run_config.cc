@@ -25,8 +25,8 @@ RunConfig run_config(const config::Config& config, const drivers::TableLimits& l
   // A sped-up clock makes the host's own delays longer: 1 ms of scheduling or disk is that many ms of the
   // rig's time. What the clocks then show is the host, not the rig.
   if (config.speed_up > 1) out.preflight.max_skew_s = 60;
-  for (double* limit :
-       {&out.preflight.wait_s, &out.store_max_s, &out.solve_max_s, &out.stop_max_s, &out.dwell.grace_s}) {
+  for (double* limit : {&out.preflight.wait_s, &out.store_max_s, &out.judge_max_s, &out.solve_max_s,
+                        &out.stop_max_s, &out.dwell.grace_s}) {
     *limit *= config.speed_up;
   }
   out.by_hand = config.by_hand();
