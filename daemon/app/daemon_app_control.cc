@@ -74,13 +74,15 @@ Reply DaemonApp::answer(const ControlRequest& request) {
 
 Reply DaemonApp::answer_run(const ControlRequest& request) {
   const Stamp now = clock_.now();
+  const bool begins =
+      request.command == ControlCommand::run_start || request.command == ControlCommand::run_resume;
+  if (begins && core_.probing())
+    return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
   Result<void> done;
   if (request.command == ControlCommand::run_start || request.command == ControlCommand::run_dry_run) {
     const auto wanted = parse_run_request(request.args);
     if (!wanted) return tl::unexpected(wanted.error());
     if (request.command == ControlCommand::run_dry_run) return dry_run(*wanted);
-    if (core_.probing())
-      return fail(ErrorCode::state, "a magnet test is going on", "wait for its end, or: mgt run abort");
     done = run_.start(*wanted, now);
   } else if (request.command == ControlCommand::run_pause) {
     done = run_.request(run::Request::pause, now);

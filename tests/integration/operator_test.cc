@@ -41,6 +41,30 @@ TEST(Operator, SwappedCablesAreFoundWithAMagnet) {
   EXPECT_EQ(ended->exit_code, 0);
 }
 
+/// Whose program was killed: control is free again, and the test goes on.
+TEST(Operator, ARunIsNotResumedDuringAMagnetTest) {
+  Bench bench;
+  bench.start_daemon();
+  std::vector<std::string> detached = kShortRun;
+  detached.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  bench.daemon().signal(SIGKILL);
+  bench.start_daemon();
+  ASSERT_EQ(bench.ask({"run", "status"}).at("state"), "interrupted");
+  ChildProcess test({program("mgt"), "--socket", bench.dir() / "control.sock", "run", "magnet-test"},
+                    bench.dir().path(), "test");
+  ASSERT_TRUE(eventually([&] { return test.err().find("arm 1 (+X)") != std::string::npos; })) << test.err();
+  test.signal(SIGKILL);
+  ASSERT_TRUE(test.wait());
+  ASSERT_TRUE(eventually([&] { return bench.ask({"control", "show"}).at("holder").is_null(); }));
+  const Finished refused = bench.mgt({"run", "resume", "--detach"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("a magnet test is going on"));
+  EXPECT_EQ(bench.mgt({"run", "abort"}).exit_code, 0);
+  EXPECT_EQ(bench.ask({"run", "status"}).at("state"), "interrupted") << "the test was ended, not the run";
+  EXPECT_EQ(bench.mgt({"run", "resume", "--detach"}).exit_code, 0);
+}
+
 TEST(Operator, AListOfPosesIsARunAndWhatCannotBeMeasuredIsRefusedWithItsPlace) {
   Bench bench;
   bench.start_daemon();
