@@ -13,7 +13,6 @@
 namespace mgtd::daemon::run {
 namespace {
 
-constexpr std::size_t kFewestSamples = 8;   // fewer give no standard deviation worth the name
 constexpr double kCorrelationNoise = 1.5;   // standard deviations of a correlation that is none
 constexpr double kFrozenDwell = 0.5;        // of successive samples, all three axes exactly equal
 constexpr double kScalarPriorReadings = 4;  // weight of the configured scatter of one scalar reading
@@ -85,7 +84,7 @@ DwellQuality Dwell::quality() const {
 
 Result<void> Dwell::acceptable() const {
   const DwellQuality q = quality();
-  const bool thin = q.gap_share > config_.max_gap_share || q.epochs < kFewestSamples;
+  const bool thin = q.gap_share > config_.max_gap_share || q.epochs < kFewestInDwell;
   const double allowed = thin && q.frozen > 0 ? 0 : kFrozenDwell * static_cast<double>(heard_ - 1);
   const auto most = std::max_element(q.repeats.begin(), q.repeats.end());
   if (config_.frozen_check && static_cast<double>(*most) > allowed) {
@@ -94,11 +93,17 @@ Result<void> Dwell::acceptable() const {
                             most - q.repeats.begin() + 1, *most, heard_ - 1),
                 "the digitiser repeats an old sample: power-cycle it and check the sensor's supply");
   }
-  if (thin) {
+  if (q.gap_share > config_.max_gap_share) {
     return fail(ErrorCode::refused,
                 fmt::format("{} of {} epochs of the dwell are missing ({:.0f} %, limit {:.0f} %)", q.missing,
                             q.missing + q.epochs, 100 * q.gap_share, 100 * config_.max_gap_share),
                 "see which sensor the GAP records name, and the state of its port");
+  }
+  if (thin) {
+    return fail(ErrorCode::refused,
+                fmt::format("{} epochs in the dwell of {:g} s, at least {} are needed", q.epochs,
+                            config_.length_s, kFewestInDwell),
+                "see which sensor the GAP records name, or lengthen the dwells");
   }
   if (static_cast<double>(q.saturated) > config_.max_saturated_share * static_cast<double>(heard_)) {
     return fail(ErrorCode::refused, fmt::format("{} of {} epochs are saturated", q.saturated, heard_),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -23,6 +24,8 @@
 /// missing. What makes a pose unusable is an Error of pose(): too many epochs missing, saturation, a sensor
 /// whose value stands still.
 namespace mgtd::daemon::run {
+
+constexpr std::size_t kFewestInDwell = 8;  ///< epochs; fewer give no standard deviation worth the name
 
 struct DwellConfig {
   double length_s{5};

@@ -13,6 +13,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/plan/run_plan_json.h"
+#include "daemon/run/enough_samples.h"
 #include "daemon/run/planned_poses.h"
 #include "daemon/run/solver.h"
 #include "proto/version.h"
@@ -140,8 +141,12 @@ void RunExecutor::find_interrupted() {
 Result<plan::RunPlan> RunExecutor::plan(const RunRequest& request) const {
   const plan::PlanOptions options = plan_options(config_, request);
   const drivers::TableLimits& limits = hooks_.limits();
-  return request.poses.empty() ? plan::make_plan(options, limits)
-                               : plan::plan_from_list(request, options, limits);
+  auto planned = request.poses.empty() ? plan::make_plan(options, limits)
+                                       : plan::plan_from_list(request, options, limits);
+  if (!planned) return planned;
+  if (auto enough = enough_samples(*planned, run::run_config(config_, limits)); !enough)
+    return tl::unexpected(enough.error());
+  return planned;
 }
 
 plan::Pace RunExecutor::pace() const { return {}; }

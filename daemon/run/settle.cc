@@ -12,12 +12,13 @@
 namespace mgtd::daemon::run {
 namespace {
 
-constexpr std::size_t kFewestInWindow = 6;
 constexpr double kWindowShare = 0.8;  // of the expected epochs; the rest may be gaps
 
 }  // namespace
 
-Settle::Settle(SettleConfig config, Instant commanded) : config_(config), commanded_(commanded) {}
+Settle::Settle(SettleConfig config, Instant commanded) : config_(config), commanded_(commanded) {
+  config_.window_s = whole_window_s(config);
+}
 
 void Settle::add(const TableReading& reading) {
   if (reading.arrival.mono < commanded_) return;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <deque>
 #include <optional>
 #include <string>
@@ -16,6 +18,8 @@
 /// of its own standard error or below `tolerance_nT`, and sd is below disturbed_ratio x the noise known from
 /// the preflight. A trend that remains at max_s is `timed_out`; scatter that remains is `disturbed`:
 /// something in the room moves.
+///
+/// The window is window_s, and longer where epochs come so slowly that it would hold too few for a slope.
 namespace mgtd::daemon::run {
 
 struct SettleConfig {
@@ -29,6 +33,11 @@ struct SettleConfig {
   double disturbed_ratio{4};  ///< scatter against noise
   double noise_nT{0};         ///< of one sample, the largest axis; 0 unknown: scatter is not judged
 };
+
+constexpr std::size_t kFewestInWindow = 6;  ///< epochs that tell a slope and the scatter about it
+[[nodiscard]] constexpr double whole_window_s(const SettleConfig& config) {
+  return std::max(config.window_s, static_cast<double>(kFewestInWindow) / config.rate_hz);
+}
 
 enum class SettleState { settling, settled, disturbed, timed_out };
 

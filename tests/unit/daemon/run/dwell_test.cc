@@ -148,6 +148,15 @@ TEST(Dwell, RefusesWhatIsNoMeasurement) {
   EXPECT_FALSE(saturated.pose(place()));
 }
 
+TEST(Dwell, SevenSamplesAreTooFew) {
+  Source source;
+  DwellConfig config;
+  config.length_s = 0.13;
+  const auto refused = filled(source, config, 2).pose(place());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "7 epochs in the dwell of 0.13 s, at least 8 are needed");
+}
+
 /// A sensor that repeats one reading for a sixth of the dwell, in a field that has moved on since.
 TEST(Dwell, RepeatedReadingsAreNoMeasurement) {
   DwellConfig config;

@@ -144,6 +144,13 @@ TEST(RunExecutor, AResumedRunHasItsCourseAgain) {
   EXPECT_EQ(course.disturbances[0].then, "the daemon ended before the field was calm");
 }
 
+TEST(RunExecutor, APlanWithTooFewSamplesInADwellIsRefused) {
+  HeldFit held;
+  EXPECT_TRUE(held.executor.plan({}));
+  held.config.rate_hz = 1;
+  EXPECT_FALSE(held.executor.plan({}));
+}
+
 TEST(RunExecutor, AResumedRunKeepsItsRetries) {
   HeldFit held({.retries = 7});
   EXPECT_EQ(held.run.fsm()->config().retries, 7);

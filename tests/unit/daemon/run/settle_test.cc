@@ -33,7 +33,7 @@ Ended settle(double decay_nT, double tau_s, double noise_nT, SettleConfig config
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, noise_nT);
   for (int k = 0;; ++k) {
-    const double t_s = k * 0.02;
+    const double t_s = k / config.rate_hz;
     judge.add(table(t_s, t_s >= 2));
     Epoch e;
     e.t = stamp_at(t_s);
@@ -50,6 +50,20 @@ TEST(Settle, QuietFieldNeedsOneWindow) {
   EXPECT_EQ(o.outcome.state, SettleState::settled);
   EXPECT_LT(o.at_s, 1.5);
   EXPECT_GE(o.at_s, 0.5);
+}
+
+/// At the rate of the slowest digitisers a window of one second holds too few samples.
+TEST(Settle, TheWindowIsLongerWhereSamplesAreRare) {
+  for (const double rate_hz : {0.5, 1.0, 3.0, 5.0}) {
+    SCOPED_TRACE(rate_hz);
+    SettleConfig config;
+    config.rate_hz = rate_hz;
+    const Ended quiet = settle(0, 1, 1, config);
+    EXPECT_EQ(quiet.outcome.state, SettleState::settled) << quiet.outcome.measured;
+  }
+  SettleConfig slow;
+  slow.rate_hz = 1;
+  EXPECT_EQ(settle(5000, 20, 1, slow).outcome.state, SettleState::timed_out);
 }
 
 TEST(Settle, WaitsForADecayAndNotLonger) {
