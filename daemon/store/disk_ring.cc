@@ -110,8 +110,10 @@ void DiskRing::promise() {
 }
 
 void DiskRing::push(const RingRecord& record) {
-  if (journal_.recording() && (past_.parts.empty() || past_.parts.back().path != journal_.file()))
+  if (journal_.recording() && (past_.parts.empty() || past_.parts.back().path != journal_.file())) {
     past_.parts.push_back({journal_.file(), record.from_seq});
+    promise();  // the next life looks for it in the newest file
+  }
   append(record);
   next_seq_ = record.to_seq + 1;
   const double half = kPromisedSyncs / 2 * to_seconds(config_.sync_every) * config_.rate_hz;
