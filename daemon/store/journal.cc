@@ -36,8 +36,9 @@ void Journal::start_file() {
   std::error_code error;
   std::filesystem::create_directories(config_.directory, error);
   std::uint64_t number = next_number(config_.directory, config_.name, config_.suffix);
-  removed_ += remove_oldest(rotated_files(config_.directory, config_.family, config_.suffix), config_.keep,
-                            config_.rotate_bytes);
+  removed_ += remove_oldest(by_age(rotated_files(config_.directory, config_.family, config_.suffix),
+                                   config_.name, std::filesystem::file_time_type::clock::now()),
+                            config_.keep, config_.rotate_bytes);
   do {
     file_.path = rotated_name(config_.directory, config_.name, number++, config_.suffix);
     file_.fd = ::open(file_.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);

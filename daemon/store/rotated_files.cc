@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
+#include <tuple>
 
 namespace mgtd::daemon::store {
 
@@ -38,6 +39,17 @@ std::uint64_t next_number(const fs::path& directory, const std::string& stem, co
   return std::strtoull(name.c_str() + stem.size() + 1, nullptr, 10) + 1;
 }
 
+std::vector<RotatedFile> by_age(std::vector<RotatedFile> files, const std::string& stem,
+                                fs::file_time_type now) {
+  const auto age = [&](const RotatedFile& file) {
+    const bool own = file.path.filename().string().starts_with(stem + ".");
+    const bool wrong = !own && file.written > now;
+    return std::tuple(own, !wrong, own ? fs::file_time_type() : file.written, file.path);
+  };
+  std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) { return age(a) < age(b); });
+  return files;
+}
+
 std::size_t remove_oldest(const std::vector<RotatedFile>& files, const KeepRule& rule, std::uint64_t coming) {
   std::uint64_t total = coming;
   for (const RotatedFile& file : files) total += file.bytes;
@@ -46,7 +58,7 @@ std::size_t remove_oldest(const std::vector<RotatedFile>& files, const KeepRule&
   for (const RotatedFile& file : files) {
     const bool too_many = rule.bytes > 0 && total > rule.bytes;
     const bool too_old = rule.age > Duration{0} && now - file.written > rule.age;
-    if (!too_many && !too_old) break;
+    if (!too_many && !too_old) continue;
     std::error_code error;
     if (fs::remove(file.path, error)) ++removed;
     total -= file.bytes;
