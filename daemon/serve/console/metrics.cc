@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -81,6 +83,11 @@ void inputs(const StatusReport& report, Page& page) {
       page.value(*input.value, {{"name", input.name}, {"unit", input.unit}});
 }
 
+bool is_doubted(std::string_view state) {
+  constexpr std::array<std::string_view, 4> kDoubts{"suspect", "identity", "exchanged", "turned"};
+  return std::find(kDoubts.begin(), kDoubts.end(), state) != kDoubts.end();
+}
+
 }  // namespace
 
 std::string metrics(const StatusReport& report, std::uint64_t console_refused) {
@@ -108,7 +115,7 @@ std::string metrics(const StatusReport& report, std::uint64_t console_refused) {
     page.value(*report.calibration_use.age_s);
   }
   page.metric("mgtd_calibration_doubted", "gauge", "1 while the stream contradicts the calibration.");
-  page.value(report.criticism.state == "suspect" || report.criticism.state == "identity" ? 1 : 0);
+  page.value(is_doubted(report.criticism.state) ? 1 : 0);
   page.metric("mgtd_run_active", "gauge", "1 while a calibration run is going on.");
   page.value(is_active(report.run.state) ? 1 : 0);
   page.metric("mgtd_run_poses_done", "gauge", "Poses of the run that are on disk.");

@@ -64,7 +64,7 @@ export function calibrationWords({ cal, calibration }) {
 function judged(status) {
   const { state, measured, limit, remedy } = status.criticism, made = conditions(status.calibration);
   if (state === "none" && !made) return null;
-  const bad = ["suspect", "identity", "near source"].includes(state);
+  const bad = ["suspect", "identity", "exchanged", "turned", "near source"].includes(state);
   return card(make("h2", {}, "The stream says of its calibration: ", make("span", { class: bad ? "bad" : "good" }, state === "none" ? "nothing" : state)),
               measured ? make("p", {}, `${measured}; limit: ${limit}. ${remedy}`) : null,
               made ? make("p", { class: warmer_K(status.calibration) >= kWarmer_K ? "warn" : "" }, `It was ${made}.`) : null);

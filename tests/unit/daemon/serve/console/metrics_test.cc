@@ -46,6 +46,17 @@ TEST(Metrics, SayWhatIsKnownAndNothingElse) {
   EXPECT_THAT(text, Not(HasSubstr("mgtd_skew_bound_seconds ")));
 }
 
+TEST(Metrics, SayThatTheCalibrationIsDoubted) {
+  StatusReport seen = report();
+  const auto doubted = [&](const char* state) {
+    seen.criticism.state = state;
+    return metrics(seen, 0).find("mgtd_calibration_doubted 1\n") != std::string::npos;
+  };
+  for (const char* state : {"suspect", "identity", "exchanged", "turned"})
+    EXPECT_TRUE(doubted(state)) << state;
+  for (const char* state : {"none", "learning", "ok", "near source"}) EXPECT_FALSE(doubted(state)) << state;
+}
+
 /// The grammar of the exposition format.
 TEST(Metrics, EveryLineIsACommentOrAValue) {
   const std::regex comment("# (HELP|TYPE) mgtd_[a-z_]+ .+");
