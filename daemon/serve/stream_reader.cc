@@ -39,14 +39,21 @@ std::optional<Error> objection_to(const Json& greeting, const std::string& where
 
 }  // namespace
 
-Result<StreamReader> StreamReader::open(const std::string& where, const WatchRequest& request) {
+Result<StreamReader> StreamReader::open(const std::string& where, const WatchRequest& request,
+                                        Duration wait) {
   auto stream =
       where.find('/') != std::string::npos ? LineStream::connect_unix(where) : LineStream::connect_tcp(where);
   if (!stream) return tl::unexpected(stream.error());
   StreamReader reader(std::move(*stream));
-  const auto hello = reader.stream_.read_line(std::chrono::seconds(5));
+  const auto hello = reader.stream_.read_line(wait);
   if (!hello) return tl::unexpected(hello.error());
-  reader.greeting_ = Json::parse(hello->value_or(""), nullptr, false);
+  if (!*hello)
+    return fail(
+        ErrorCode::unreachable,
+        fmt::format("{} is open, but nothing came from it within {:g} s", where, to_seconds(wait)),
+        "systemctl status mgtd says what it is doing; is this the stream's address (keys tcp and unix "
+        "under [stream])?");
+  reader.greeting_ = Json::parse(**hello, nullptr, false);
   if (auto objection = objection_to(reader.greeting_, where)) return tl::unexpected(std::move(*objection));
   if (auto sent = reader.stream_.send_line(encode(request)); !sent) return tl::unexpected(sent.error());
   return reader;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,9 +15,10 @@ namespace mgtd::daemon::serve {
 
 class StreamReader {
  public:
-  /// `where` is a Unix socket's path (it holds a '/') or a TCP address. Refuses a greeting that is none, and
-  /// a daemon whose protocol has another major version.
-  [[nodiscard]] static Result<StreamReader> open(const std::string& where, const WatchRequest& request);
+  /// `where` is a Unix socket's path (it holds a '/') or a TCP address. Refuses a greeting that is none, or
+  /// that does not come within `wait`, and a daemon whose protocol has another major version.
+  [[nodiscard]] static Result<StreamReader> open(const std::string& where, const WatchRequest& request,
+                                                 Duration wait = std::chrono::seconds(5));
 
   /// The next line as it came; empty when none came within `wait`.
   [[nodiscard]] Result<std::optional<std::string>> next_line(Duration wait) {

@@ -302,6 +302,10 @@ TEST_F(ClientTest, StreamReaderRefusesWhatIsNoStream) {
   auto closed_port = StreamReader::open("127.0.0.1:1", {});
   ASSERT_FALSE(closed_port);
   EXPECT_EQ(closed_port.error().code, ErrorCode::unreachable);
+  auto silent = StreamReader::open(scratch_ / "c.sock", {}, from_seconds(0.02));
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().code, ErrorCode::unreachable);
+  EXPECT_THAT(silent.error().message, HasSubstr("nothing came from it within 0.02 s"));
 }
 
 }  // namespace
