@@ -21,7 +21,7 @@
 ///   run.start            args: run_request.h            -> RUN
 ///   run.dry-run          args: run_request.h            -> {"poses","minutes","text","list":[...]}
 ///   run.pause, run.resume, run.finish, run.abort, run.status       -> RUN
-///   run.enter            args: {"azimuth_deg","pitch_deg","roll_deg"}: what the scales say   -> RUN
+///   run.enter            args: what the scales say (operator_prompt.h)                       -> RUN
 ///   run.redo             what was entered last is asked for again                            -> RUN
 ///   run.course           what the run has gained so far             -> run_course.h
 ///   run.events           what the run wrote down of itself          -> run_log.h
@@ -42,7 +42,7 @@
 namespace mgtd {
 
 inline constexpr int kControlProtocolMajor = 1;
-inline constexpr int kControlProtocolMinor = 7;
+inline constexpr int kControlProtocolMinor = 8;
 /// A calibration with a hundred coefficients takes 0.4 MB.
 inline constexpr std::size_t kControlLineLimit = 1 << 20;
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "proto/error.h"
 #include "proto/reading.h"
@@ -26,11 +27,24 @@ struct OperatorPrompt {
   std::string text{}, again{};
 };
 
+[[nodiscard]] std::string_view name(OperatorPrompt::What what);
 [[nodiscard]] nlohmann::ordered_json to_json(const OperatorPrompt& prompt);
 [[nodiscard]] Result<OperatorPrompt> prompt_from_json(const nlohmann::json& object);
 
-/// Arguments of run.enter: {"azimuth_deg":..,"pitch_deg":..,"roll_deg":..}, all three, each within 720 deg.
-[[nodiscard]] Result<TableAngles> parse_scale_entry(const nlohmann::json& args);
+/// What the scales say. Where it names a pose or what was asked for, it answers no other prompt.
+struct ScaleEntry {
+  TableAngles angles;
+  std::optional<int> pose{};
+  std::optional<OperatorPrompt::What> what{};
+
+  [[nodiscard]] bool answers(const OperatorPrompt& prompt) const {
+    return pose.value_or(prompt.pose) == prompt.pose && what.value_or(prompt.what) == prompt.what;
+  }
+};
+
+/// Arguments of run.enter: {"azimuth_deg":..,"pitch_deg":..,"roll_deg":..}, all three, each within 720 deg;
+/// and, as the prompt has them, "pose" and "what".
+[[nodiscard]] Result<ScaleEntry> parse_scale_entry(const nlohmann::json& args);
 [[nodiscard]] nlohmann::json scale_entry_json(const TableAngles& angles);
 
 }  // namespace mgtd

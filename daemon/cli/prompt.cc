@@ -28,7 +28,7 @@ std::string question(const OperatorPrompt& prompt) {
          (note ? "\n  done, or pause, abort: " : "\n  azimuth pitch roll in deg, or redo, pause, abort: ");
 }
 
-Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What what) {
+Result<PromptAnswer> parse_answer(std::string_view line, const OperatorPrompt& prompt) {
   std::string text(line);
   std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream in(text);
@@ -38,7 +38,7 @@ Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What wh
     for (const Word& known : kWords)
       if (words[0] == known.word) return PromptAnswer{known.command};
   }
-  if (what == OperatorPrompt::What::note) {
+  if (prompt.what == OperatorPrompt::What::note) {
     if (words.size() == 1 && words[0] == "done") return PromptAnswer{ControlCommand::run_resume};
     return fail(ErrorCode::usage, "that is not an answer", "type done when it is done, or pause, or abort");
   }
@@ -55,6 +55,8 @@ Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What wh
     if (!value) return refuse(fmt::format("'{}' is not a number", words[i]));
     out.args[kKeys[i]] = *value;
   }
+  out.args["pose"] = prompt.pose;
+  out.args["what"] = name(prompt.what);
   if (auto ok = parse_scale_entry(out.args); !ok) return tl::unexpected(ok.error());
   return out;
 }

@@ -21,7 +21,7 @@ struct PromptAnswer {
 
 /// Three numbers in degrees: azimuth, pitch, roll, with or without commas; or redo, pause, abort. Where a
 /// note is asked for, "done" instead of the numbers. An empty line is no answer: the target is never taken
-/// for a reading.
-[[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line, OperatorPrompt::What what);
+/// for a reading. Numbers answer this prompt and no other.
+[[nodiscard]] Result<PromptAnswer> parse_answer(std::string_view line, const OperatorPrompt& prompt);
 
 }  // namespace mgtd::daemon::cli

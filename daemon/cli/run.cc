@@ -51,8 +51,8 @@ int print_end(const Session& session, const RunStatus& run) {
   return 0;
 }
 
-/// Asks until the operator enters something that the daemon accepts, or interrupts. False at the end of the
-/// input.
+/// Asks until the operator enters something that the daemon accepts, or interrupts, or the run is no longer
+/// where it asks this. False at the end of the input.
 bool answer(const Session& session, serve::ControlClient& client, InputLines& keyboard,
             const OperatorPrompt& prompt) {
   for (;;) {
@@ -64,11 +64,12 @@ bool answer(const Session& session, serve::ControlClient& client, InputLines& ke
                  prompt.what == OperatorPrompt::What::note ? "resume" : "enter AZIMUTH PITCH ROLL");
       return false;
     }
-    const auto said = parse_answer(*line, prompt.what);
+    const auto said = parse_answer(*line, prompt);
     const auto done = said ? client.request(said->command, said->args)
                            : Result<nlohmann::json>(tl::unexpected(said.error()));
     if (done) return true;
     fmt::print(stderr, "{}\n", done.error().text());
+    if (done.error().code == ErrorCode::state) return true;
   }
 }
 

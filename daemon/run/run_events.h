@@ -10,6 +10,7 @@
 #include "proto/epoch.h"
 #include "proto/error.h"
 #include "proto/health.h"
+#include "proto/operator_prompt.h"
 #include "proto/reading.h"
 #include "proto/run_status.h"
 #include "proto/slot.h"
@@ -23,10 +24,7 @@ enum class Request { pause, resume, abort, finish, redo };  ///< of the operator
   return kNames[static_cast<std::size_t>(request)];
 }
 
-/// What the operator read off the scales that the run asked for.
-struct ScaleEntered {
-  TableAngles angles;
-};
+using ScaleEntered = ScaleEntry;  ///< the answer of the operator
 
 struct Tick {};  ///< time passes; every 20-50 ms
 

@@ -300,11 +300,10 @@ Result<void> RunExecutor::request(Request request, Stamp now) {
   return {};
 }
 
-Result<void> RunExecutor::enter(const TableAngles& scales, Stamp now) {
+Result<void> RunExecutor::enter(const ScaleEntry& scales, Stamp now) {
   if (!active()) return fail(ErrorCode::state, "no run is going on", "mgt run start begins one");
-  const ScaleEntered entered{scales};
-  if (auto possible = run_.fsm()->possible(entered); !possible) return possible;
-  run_.feed(entered, now);
+  if (auto possible = run_.fsm()->possible(scales); !possible) return possible;
+  run_.feed(scales, now);
   return {};
 }
 

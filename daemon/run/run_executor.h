@@ -60,7 +60,7 @@ class RunExecutor {
   [[nodiscard]] Result<void> request(Request request, Stamp now);
 
   /// What the scales say that the run asks for. Refused when it asks for nothing.
-  [[nodiscard]] Result<void> enter(const TableAngles& scales, Stamp now);
+  [[nodiscard]] Result<void> enter(const ScaleEntry& scales, Stamp now);
 
   void carry_out(const Action& action, Stamp now) {
     std::visit([&](const auto& a) { act(a, now); }, action);

@@ -139,6 +139,9 @@ Result<void> RunFsm::possible(const ScaleEntered& entered) const {
   if (!in<phase::Asking>())
     return fail(ErrorCode::state, "nothing is asked for now",
                 "mgt run status shows what is; mgt run redo asks for the last entry again");
+  if (!entered.answers(*hands_.prompt()))
+    return fail(ErrorCode::state, "that answers another question; asked is now: " + hands_.prompt()->text,
+                "enter what the scales say to this one");
   return hands_.possible(entered.angles, config_.limits);
 }
 

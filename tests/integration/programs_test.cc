@@ -308,6 +308,38 @@ TEST(Programs, CtrlCLeavesTheQuestionOfARunByHand) {
   EXPECT_EQ(bench.ask({"run", "status"}).at("pose"), 0);
 }
 
+/// Somebody else has answered meanwhile: the entry is not taken for the next pose, and that is asked for.
+TEST(Programs, AQuestionThatWasAnsweredElsewhereIsAskedNoLonger) {
+  Bench bench("30", "[rig]\nname = \"by hand\"\nparameters = \"table6\"\n[table]\nhands = \"table\"\n");
+  bench.start_daemon();
+  std::vector<std::string> start = kShortRun;
+  start.emplace_back("--detach");
+  ASSERT_EQ(bench.mgt(start).exit_code, 0);
+  const std::string keyboard = bench.dir() / "keyboard";
+  ASSERT_EQ(::mkfifo(keyboard.c_str(), 0600), 0);
+  const int hand = ::open(keyboard.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(hand, 0);
+  const ChildProcess follow({"/bin/sh", "-c", "exec \"$0\" --socket \"$1\" run follow < \"$2\"",
+                             program("mgt"), bench.dir() / "control.sock", keyboard},
+                            bench.dir().path(), "follow");
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return follow.err().find(text) != std::string::npos; });
+  };
+  ASSERT_TRUE(shows("pose 1 of 34: turn")) << follow.err();
+  const json target = bench.ask({"run", "status"}).at("prompt").at("target");
+  std::vector<std::string> enter{"run", "enter"};
+  for (const char* axis : {"azimuth_deg", "pitch_deg", "roll_deg"}) enter.push_back(target.at(axis).dump());
+  ASSERT_EQ(bench.mgt(enter).exit_code, 0);
+  ASSERT_TRUE(eventually([&] {
+    const json prompt = bench.ask({"run", "status"}).at("prompt");
+    return prompt.is_object() && prompt.at("pose") == 2;
+  }));
+  ASSERT_EQ(::write(hand, "0 0 0\n", 6), 6);
+  EXPECT_TRUE(shows("that answers another question")) << follow.err();
+  EXPECT_TRUE(shows("pose 2 of 34: turn the table to")) << follow.err();
+  ::close(hand);
+}
+
 TEST(Programs, BadInputIsNamedAndNothingIsWritten) {
   TemporaryDirectory dir;
   std::ofstream(dir / "bad.csv") << "pose,s1_x_nT\n1,abc\n";

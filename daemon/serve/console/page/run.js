@@ -33,7 +33,7 @@ function asking(run, act) {
   const form = make("form", { onsubmit: (event) => {
     event.preventDefault();
     const read = (name) => Number(event.target.elements[name].value);
-    act("run.enter", { azimuth_deg: read("azimuth"), pitch_deg: read("pitch"), roll_deg: read("roll") });
+    act("run.enter", { azimuth_deg: read("azimuth"), pitch_deg: read("pitch"), roll_deg: read("roll"), pose: prompt.pose, what: prompt.what });
   } }, ["azimuth", "pitch", "roll"].map(field), make("button", {}, "The scales say this"),
                     make("button", { type: "button", onclick: () => act("run.redo") }, "The last entry was wrong"));
   if (prompt.what === "note") return [make("p", {}, prompt.text), make("button", { onclick: () => act("run.resume") }, "Done"),

@@ -238,6 +238,24 @@ TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
   EXPECT_EQ(bench.stored.size(), 1U);
 }
 
+/// Two terminals show the same question, and both are answered.
+TEST(RunByHand, AnAnswerToAnEarlierQuestionIsNotTaken) {
+  RunBench bench(hand_plan(12), hand_config());
+  ASSERT_TRUE(to_prompt(bench));
+  daemon::run::ScaleEntered entry{bench.status->prompt->target, bench.status->prompt->pose};
+  bench.really = entry.angles;
+  bench.send(entry);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  ASSERT_TRUE(to_prompt(bench));
+  ASSERT_EQ(bench.status->prompt->pose, 2);
+  const auto late = bench.fsm.possible(entry);
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().code, ErrorCode::state);
+  EXPECT_THAT(late.error().message, HasSubstr("asked is now: pose 2 of 12"));
+  entry.pose = 2;
+  EXPECT_TRUE(bench.fsm.possible(entry));
+}
+
 TEST(RunByHand, WhatIsEnteredOutsideTheLimitsIsRefused) {
   RunBench bench(hand_plan(12), hand_config());
   ASSERT_TRUE(to_prompt(bench));
