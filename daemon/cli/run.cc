@@ -16,6 +16,7 @@
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
 #include "daemon/cli/prompt.h"
+#include "daemon/cli/run_notices.h"
 #include "daemon/plan/plan_from_list.h"
 #include "daemon/plan/run_plan_json.h"
 #include "daemon/run/limits_cost.h"
@@ -40,11 +41,7 @@ int print_end(const Session& session, const RunStatus& run) {
   fmt::print(stderr, "{}: {}\n", name(run.state), run.message);
   if (run.state == RunState::paused && run.message.find("mgt run resume") == std::string::npos)
     fmt::print(stderr, "mgt run resume goes on with it, mgt run abort ends it\n");
-  for (const Check& check : run.checks) {
-    if (!check.passed)
-      fmt::print(stderr, "  failed: {}: {}; limit {}; {}\n", check.name, check.measured, check.limit,
-                 check.remedy);
-  }
+  fmt::print(stderr, "{}", failed_lines(run));
   if (run.state != RunState::done) return 1;
   if (!session.json)
     fmt::print("proposed: {}\naccept it with: mgt calibrations accept {}\n", run.proposed, run.proposed);
@@ -73,24 +70,6 @@ bool answer(const Session& session, serve::ControlClient& client, InputLines& ke
   }
 }
 
-/// Says once why a run waits that goes on by itself, and when it does.
-class WaitNotice {
- public:
-  /// Empty, or a line.
-  std::string of(const RunStatus& run) {
-    const std::string why = run.state == RunState::paused && run.goes_on ? run.message : std::string();
-    if (why == why_) return {};
-    why_ = why;
-    if (!why.empty()) return why + "\n";
-    const bool measures =
-        is_active(run.state) && run.state != RunState::paused && run.state != RunState::aborting;
-    return measures ? "the run goes on\n" : "";
-  }
-
- private:
-  std::string why_;
-};
-
 /// Shows the run until it ends or waits for the operator. Ctrl-C leaves it running.
 int follow(const Session& session) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -99,7 +78,7 @@ int follow(const Session& session) {
   if (!client) return report(session, client.error());
   std::string judged;
   InputLines keyboard(STDIN_FILENO);
-  WaitNotice wait;
+  RunNotices notices;
   int last_tenth = -1;
   while (!interrupted()) {
     const auto reply = client->request(ControlCommand::run_status);
@@ -112,7 +91,7 @@ int follow(const Session& session) {
       judged = run->judged;
       fmt::print(stderr, "{}{}\n", terminal ? "\r\033[K" : "", judged);
     }
-    if (const std::string notice = wait.of(*run); !notice.empty())
+    if (const std::string notice = notices.of(*run); !notice.empty())
       fmt::print(stderr, "{}{}", terminal ? "\r\033[K" : "", notice);
     const std::string line = progress_line(*run, terminal_width(STDERR_FILENO) - 1);
     const int tenth = run->poses > 0 ? 10 * run->pose / run->poses : 0;
@@ -216,7 +195,8 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
   if (session.json) {
     print_json(*reply);
   } else {
-    fmt::print("{}\n{}\n", progress_line(*run, 100), run->message);
+    fmt::print("{}\n{}\n{}", progress_line(*run, 100), run->message,
+               command == ControlCommand::run_status ? failed_lines(*run) : "");
   }
   return 0;
 }
