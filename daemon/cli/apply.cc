@@ -12,6 +12,7 @@
 
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/store/pose_source.h"
 
@@ -49,6 +50,8 @@ void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
 }
 
 int run_apply(const Session& session, const ApplyArguments& args) {
+  const auto output = OutputFile::at(args.output, {args.calibration, args.run});
+  if (!output) return report(session, output.error());
   const auto calibration = with_progress("apply", [&] { return calibration_of(args.calibration, {}); });
   if (!calibration) return report(session, calibration.error());
   const auto table = store::read_poses(args.run);
@@ -65,16 +68,15 @@ int run_apply(const Session& session, const ApplyArguments& args) {
   for (const std::string& effect : left_out)
     fmt::print(stderr, "{} was left out where its inputs are missing: see the column left_out\n", effect);
   doubt_closure(*rows);
-  if (!args.output.empty()) {
-    if (auto written = write_file(args.output, csv); !written) return report(session, written.error());
-  }
+  if (auto written = output->write(csv, fmt::format("{} rows", rows->size())); !written)
+    return report(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.apply/1"},
                 {"calibration", calibration->id},
                 {"poses", rows->size()},
                 {"left_out", left_out},
-                {"output", args.output.empty() ? nlohmann::json() : nlohmann::json(args.output)}});
-  } else if (args.output.empty()) {
+                {"output", output->wanted() ? nlohmann::json(output->path()) : nlohmann::json()}});
+  } else if (!output->wanted()) {
     fmt::print("{}", csv);
   }
   return 0;

@@ -5,13 +5,8 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <optional>
 #include <utility>
 
 #include "calib/report/wrapped.h"
@@ -49,43 +44,6 @@ int report(const Session& session, const Error& error, nlohmann::json beside) {
     print_json(beside);
   }
   return exit_code(error.code);
-}
-
-namespace {
-
-tl::unexpected<Error> cannot_write(const std::string& path, int os_error) {
-  return fail(ErrorCode::io, fmt::format("{} cannot be written: {}", path, std::strerror(os_error)),
-              "choose another place with -o");
-}
-
-/// Writes the content; returns errno if that fails.
-std::optional<int> put(const std::string& path, const std::string& content) {
-  errno = 0;
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  if (out << content << std::flush) return std::nullopt;
-  return errno;
-}
-
-/// Whether the path is a device, a FIFO or a symbolic link, which is written to and stays what it is.
-bool stays(const std::string& path) {
-  std::error_code ignored;
-  const auto own = std::filesystem::symlink_status(path, ignored);
-  return std::filesystem::exists(own) && !std::filesystem::is_regular_file(own);
-}
-
-}  // namespace
-
-Result<void> write_file(const std::string& path, const std::string& content) {
-  if (stays(path)) {
-    if (const auto failed = put(path, content)) return cannot_write(path, *failed);
-    return {};
-  }
-  const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
-  auto failed = put(temporary, content);
-  if (!failed && std::rename(temporary.c_str(), path.c_str()) != 0) failed = errno;
-  if (!failed) return {};
-  std::remove(temporary.c_str());
-  return cannot_write(path, *failed);
 }
 
 CLI::App* add_command(CLI::App& app, Session& session, const std::string& name, const std::string& summary,

@@ -35,9 +35,6 @@ void print_text(const Session& session, const std::string& text);
 /// One JSON object on stdout.
 void print_json(const nlohmann::json& object);
 
-/// Writes a whole file by way of a temporary one, so that a failure leaves the old file untouched. A device,
-/// a FIFO or a symbolic link is written to directly and stays what it is.
-[[nodiscard]] Result<void> write_file(const std::string& path, const std::string& content);
 using store::read_file;
 
 /// Adds a subcommand whose body runs after parsing; its return value is the exit code.

@@ -15,6 +15,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/figures_flag.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -49,6 +50,8 @@ std::vector<calib::report::figures::Figure> figures_of(const calib::report::Pane
 int run_compare(const Session& session, const CompareArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
     return report(session, ready.error());
+  const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
+  if (!output) return report(session, output.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -63,14 +66,14 @@ int run_compare(const Session& session, const CompareArguments& args) {
   };
   if (!comparison) return refused(comparison.error());
   std::optional<calib::criticism::tests::PosePoints> points;
-  if (args.poses || !args.output.empty() || args.figures.asked()) {
+  if (args.poses || output->wanted() || args.figures.asked()) {
     auto found =
         with_progress("compare", [&] { return calib::criticism::tests::pose_points(*comparison->fit); });
     if (!found) return refused(found.error());
     points = *std::move(found);
   }
-  if (!args.output.empty()) {
-    if (auto written = write_file(args.output, calib::report::to_csv(*points)); !written)
+  if (output->wanted()) {
+    if (auto written = output->write(calib::report::to_csv(*points), "what is left at each pose"); !written)
       return report(session, written.error());
   }
   nlohmann::json out = calib::report::to_json(*comparison);

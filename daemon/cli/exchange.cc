@@ -12,6 +12,7 @@
 #include "daemon/cli/array_flags.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/import_map_file.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/store/pose_source.h"
 #include "daemon/store/run_file.h"
 #include "proto/version.h"
@@ -63,31 +64,26 @@ int run_import(const Session& session, const ExchangeArguments& args) {
   if (!geometry) return report(session, geometry.error());
   if (auto done = store::import_poses(table, args.to, header_of(table, args, *geometry)); !done)
     return report(session, done.error());
-  if (session.json) {
+  tell_written(fmt::format("{} poses", table.poses.size()), args.to);
+  if (session.json)
     print_json({{"schema", "mgt.import/1"}, {"poses", table.poses.size()}, {"output", args.to}});
-  } else {
-    fmt::print("{} poses in {}\n", table.poses.size(), args.to);
-  }
   return 0;
 }
 
 int run_export(const Session& session, const ExchangeArguments& args) {
+  const auto output = OutputFile::at(args.to, {args.from});
+  if (!output) return report(session, output.error());
   const auto table = store::read_poses(args.from);
   if (!table) return report(session, table.error());
   const std::string csv = calib::poses::format_pose_table(*table);
-  if (args.to.empty() && !session.json) {
-    fmt::print("{}", csv);
-    return 0;
-  }
-  if (!args.to.empty()) {
-    if (auto written = write_file(args.to, csv); !written) return report(session, written.error());
-  }
+  if (auto written = output->write(csv, fmt::format("{} poses", table->poses.size())); !written)
+    return report(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.export/1"},
                 {"poses", table->poses.size()},
-                {"output", args.to.empty() ? nlohmann::json() : nlohmann::json(args.to)}});
-  } else {
-    fmt::print("{} poses in {}\n", table->poses.size(), args.to);
+                {"output", output->wanted() ? nlohmann::json(output->path()) : nlohmann::json()}});
+  } else if (!output->wanted()) {
+    fmt::print("{}", csv);
   }
   return 0;
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "calib/report/figure_words.h"
+#include "daemon/cli/output_file.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -52,9 +53,10 @@ Result<void> hand_out(const FiguresFlag& flag,
   const std::filesystem::path folder = folder_of(flag);
   if (folder.empty()) return {};
   for (const calib::report::figures::Figure& figure : figures) {
-    const std::string path = (folder / (figure.name + ".svg")).string();
-    if (auto written = write_file(path, figure.svg); !written) return written;
-    fmt::print(stderr, "{}: {}\n", path, figure.title);
+    const auto output = OutputFile::at((folder / (figure.name + ".svg")).string(), {}, "--figures");
+    if (!output) return tl::unexpected(output.error());
+    if (auto written = output->write(figure.svg, fmt::format("figure \"{}\"", figure.title)); !written)
+      return written;
   }
   return {};
 }

@@ -8,6 +8,7 @@
 #include "daemon/acquire/calibrated_with.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -27,6 +28,8 @@ struct FitArguments {
 };
 
 int run_fit(const Session& session, const FitArguments& args) {
+  const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
+  if (!output) return report(session, output.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -36,12 +39,10 @@ int run_fit(const Session& session, const FitArguments& args) {
   });
   if (!fitted) return report(session, fitted.error());
   acquire::name_instruments(fitted->calibration, args.run);
-  if (!args.output.empty()) {
-    if (auto written = write_file(args.output, calib::calibration::to_json_text(fitted->calibration));
-        !written)
-      return report(session, written.error());
-    fmt::print(stderr, "calibration {} written to {}\n", fitted->calibration.id, args.output);
-  }
+  if (auto written = output->write(calib::calibration::to_json_text(fitted->calibration),
+                                   "calibration " + fitted->calibration.id);
+      !written)
+    return report(session, written.error());
   if (session.json) {
     print_json(calib::report::to_json(*fitted));
   } else {

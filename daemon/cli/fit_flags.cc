@@ -148,6 +148,12 @@ std::vector<std::pair<std::string, std::string>> field_options(const FitFlags& f
   return out;
 }
 
+std::vector<std::string> files_read(const std::string& run, const FitFlags& flags) {
+  std::vector<std::string> out{run, flags.array.array};
+  out.insert(out.end(), flags.further.begin(), flags.further.end());
+  return out;
+}
+
 Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags) {
   auto source = store::read_runs(run, flags.further);
   if (source) tell_masked(*source);

@@ -45,6 +45,9 @@ void add_table_flag(CLI::App* command, FitFlags& flags);
 /// RUN, and the further runs behind it.
 [[nodiscard]] Result<store::PoseSource> read_source(const std::string& run, const FitFlags& flags);
 
+/// The files that a command with these flags reads, RUN first; empty names are none.
+[[nodiscard]] std::vector<std::string> files_read(const std::string& run, const FitFlags& flags);
+
 /// Says on stderr which poses of a run file are masked.
 void tell_masked(const store::PoseSource& source);
 

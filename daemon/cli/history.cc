@@ -7,6 +7,7 @@
 #include "calib/report/parameter_history.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/calibration_file.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -78,15 +79,19 @@ Result<nlohmann::json> history_of_files(const HistoryArguments& args) {
 }
 
 int run_history(const Session& session, const HistoryArguments& args) {
+  std::vector<std::string> read = args.files;
+  read.push_back(args.flags->array.array);
+  const auto output = OutputFile::at(args.figure, read, "--figure");
+  if (!output) return report(session, output.error());
   auto history =
       args.files.empty() ? ask(session, ControlCommand::calibrations_history) : history_of_files(args);
   if (!history) return report(session, history.error());
-  if (!args.figure.empty()) {
+  if (output->wanted()) {
     if (!history->at("figure").is_object())
       return report(session, {ErrorCode::refused,
                               "there is no figure: no parameter moved from one calibration to another",
                               "it takes two calibrations of this array that were not rejected"});
-    if (auto written = write_file(args.figure, history->at("figure").at("svg")); !written)
+    if (auto written = output->write(history->at("figure").at("svg"), "figure"); !written)
       return report(session, written.error());
   }
   if (session.json) {
@@ -95,7 +100,6 @@ int run_history(const Session& session, const HistoryArguments& args) {
     return 0;
   }
   print_text(session, history_text(*history));
-  if (!args.figure.empty()) fmt::print(stderr, "figure written to {}\n", args.figure);
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/remaining_law.h"
 #include "daemon/cli/work_progress.h"
 
@@ -56,6 +57,8 @@ std::optional<calib::criticism::search::Waterfall> waterfall_of(const PoseTable&
 }
 
 int run_improve(const Session& session, const ImproveArguments& args) {
+  const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
+  if (!output) return report(session, output.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -66,19 +69,18 @@ int run_improve(const Session& session, const ImproveArguments& args) {
   });
   if (!improved) return report(session, improved.error());
   acquire::name_instruments(improved->fit.calibration, args.run);
-  if (!args.output.empty()) {
-    const calib::calibration::Calibration& calibration = improved->fit.calibration;
-    if (auto written = write_file(args.output, calib::calibration::to_json_text(calibration)); !written)
-      return report(session, written.error());
-    fmt::print(stderr, "calibration {} written to {}\n", calibration.id, args.output);
-  }
-  const auto whole = with_final_model(*options, improved->fit.calibration);
+  const calib::calibration::Calibration& calibration = improved->fit.calibration;
+  if (auto written =
+          output->write(calib::calibration::to_json_text(calibration), "calibration " + calibration.id);
+      !written)
+    return report(session, written.error());
+  const auto whole = with_final_model(*options, calibration);
   const auto steps = whole ? waterfall_of(source->table, *whole) : std::nullopt;
   const auto law = whole && !args.no_law
                        ? law_of_the_rest(source->table, *options, whole->effects, improved->finding)
                        : std::nullopt;
-  if (law && !law->instead_of.empty() && !args.output.empty())
-    fmt::print(stderr, "{} holds {}: formulas account for everything without that\n", args.output,
+  if (law && !law->instead_of.empty() && output->wanted())
+    fmt::print(stderr, "{} holds {}: formulas account for everything without that\n", output->path(),
                fmt::join(law->instead_of, ", "));
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*improved);

@@ -14,6 +14,7 @@
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/next_hypotheses.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/plan/plan_from_list.h"
 #include "proto/run_request.h"
@@ -123,6 +124,8 @@ int run_next(const Session& session, const NextArguments& args) {
   if (args.pair.size() == 1 && !place)
     return report(session, {ErrorCode::usage, "one effect alone leaves nothing to settle",
                             "name two, or none; a place (s3.z) asks about what mgt discover finds there"});
+  const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
+  if (!output) return report(session, output.error());
   const auto source = read_source(args.run, *args.flags);
   if (!source) return report(session, source.error());
   const auto options = fit_options(*args.flags, *source);
@@ -133,12 +136,11 @@ int run_next(const Session& session, const NextArguments& args) {
     return answer(args, *source, told, *doubts);
   });
   if (!next) return report(session, next.error());
-  if (!args.output.empty() && !next->steps.empty()) {
+  if (!next->steps.empty()) {
     const calib::criticism::search::NextStep& best = next->steps.front();
-    if (auto written = write_file(args.output, calib::report::pose_list(best)); !written)
+    const std::string what = fmt::format("{} poses ({})", best.poses.size(), best.measurement.action);
+    if (auto written = output->write(calib::report::pose_list(best), what); !written)
       return report(session, written.error());
-    fmt::print(stderr, "{} poses written to {}: {}\n", best.poses.size(), args.output,
-               best.measurement.action);
   }
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*next);

@@ -15,6 +15,7 @@
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/journal_files.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -32,6 +33,7 @@ struct ReplayOutput {
 
   void write(std::string_view line) {
     if (file == nullptr) return;
+    if (file == stdout) return fmt::print("{}\n", line);
     const bool whole =
         std::fwrite(line.data(), 1, line.size(), file) == line.size() && std::fputc('\n', file) != EOF;
     failed += whole ? 0 : 1;
@@ -126,6 +128,10 @@ int run_replay(const Session& session, const ReplayArguments& args) {
   const auto journals = journals_of(args.journals);
   if (!journals) return report(session, journals.error());
   for (const Error& why : journals->left_out) fmt::print(stderr, "{}\n", why.text());
+  std::vector<std::string> read = journals->play;
+  read.push_back(args.calibration);
+  const auto place = OutputFile::at(args.output, read);
+  if (!place) return report(session, place.error());
   std::shared_ptr<const calib::calibration::Calibration> instead;
   if (!args.calibration.empty()) {
     auto calibration = read_calibration(args.calibration);
@@ -151,7 +157,7 @@ int run_replay(const Session& session, const ReplayArguments& args) {
       damaged += *unread;
     }
   }
-  if (output.file != nullptr && (std::fflush(output.file) != 0 || output.failed > 0))
+  if (file && (std::fflush(file.get()) != 0 || output.failed > 0))
     return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
   if (session.json) print_json(summary(replay.counts(), journals->left_out, damaged));
   if (!session.json) print_summary(replay.counts(), damaged);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/cli/output_file.h"
 #include "daemon/cli/report_page.h"
 #include "daemon/cli/work_progress.h"
 
@@ -28,21 +29,22 @@ struct ReportArguments {
 };
 
 int run_report(const Session& session, const ReportArguments& args) {
+  std::vector<std::string> read = files_read(args.wishes.run, *args.flags);
+  read.insert(read.end(), args.wishes.earlier.begin(), args.wishes.earlier.end());
+  const auto output = OutputFile::at(args.wishes.output, read);
+  if (!output) return report(session, output.error());
   const auto content = [&] {
     const WorkProgress shown("report");
     return report_content(args.wishes, *args.flags, shown.rounds());
   }();
   if (!content) return report(session, content.error());
   const std::string page = report_page(*content);
-  if (auto written = write_file(args.wishes.output, page); !written) return report(session, written.error());
-  if (session.json) {
+  if (auto written = output->write(page, "report"); !written) return report(session, written.error());
+  if (session.json)
     print_json({{"schema", "mgt.report/1"},
                 {"output", args.wishes.output},
                 {"bytes", page.size()},
                 {"verdict", to_string(content->explained.finding)}});
-  } else {
-    fmt::print("report written to {}\n", args.wishes.output);
-  }
   return 0;
 }
 

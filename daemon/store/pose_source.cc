@@ -53,8 +53,12 @@ Result<void> same_array(const std::filesystem::path& first, const std::optional<
 
 }  // namespace
 
+bool is_run_file(const std::filesystem::path& path) {
+  return is_database(path) || path.extension() == ".mgtrun";
+}
+
 Result<PoseSource> read_run(const std::filesystem::path& path, Masked masked) {
-  if (is_database(path) || path.extension() == ".mgtrun") {
+  if (is_run_file(path)) {
     auto file = RunFile::open(path, Access::read_only);
     if (!file) return tl::unexpected(file.error());
     auto table = file->poses();

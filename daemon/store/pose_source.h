@@ -23,6 +23,9 @@ struct PoseSource {
   std::vector<MaskedPose> masked{};       ///< of a run file
 };
 
+/// Whether the file holds a run or is called like one (*.mgtrun).
+[[nodiscard]] bool is_run_file(const std::filesystem::path& path);
+
 /// Whether poses that an operator masked stand in the table.
 enum class Masked { left_out, kept };
 

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the programs write: never over what they read.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/checkout.h"
+#include "tests/support/child_process.h"
+#include "tests/support/whole_file.h"
+
+namespace mgtd::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A pose table, a run file and a calibration of it, as an operator has them in a folder.
+class Outputs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(
+        run_program({program("mgt-rig"), "table", "--rig", "table6", "-o", poses()}, dir_.path()).exit_code,
+        0);
+    ASSERT_EQ(mgt({"import", poses(), "-o", run()}).exit_code, 0);
+    ASSERT_EQ(mgt({"fit", poses(), "-o", calibration()}).exit_code, 0);
+  }
+  [[nodiscard]] Finished mgt(std::vector<std::string> words) const {
+    words.insert(words.begin(), program("mgt"));
+    return run_program(std::move(words), dir_.path());
+  }
+  [[nodiscard]] std::string poses() const { return dir_ / "poses.csv"; }
+  [[nodiscard]] std::string run() const { return dir_ / "run.mgtrun"; }
+  [[nodiscard]] std::string calibration() const { return dir_ / "cal.json"; }
+
+  TemporaryDirectory dir_;
+};
+
+/// The measurement is there once: a slip of the file name must not cost it.
+TEST_F(Outputs, NoCommandWritesOverWhatItReads) {
+  const std::string link = dir_ / "link.csv", hard = dir_ / "hard.csv";
+  std::filesystem::create_symlink("poses.csv", link);
+  std::filesystem::create_hard_link(poses(), hard);
+  const std::vector<std::vector<std::string>> slips{
+      {"fit", poses(), "-o", poses()},
+      {"fit", poses(), "-o", link},
+      {"fit", link, "-o", hard},
+      {"fit", run(), "--and", poses(), "-o", poses()},
+      {"fit", run(), "-o", run()},
+      {"improve", poses(), "-o", poses()},
+      {"next", poses(), "-o", poses()},
+      {"compare", poses(), "-o", poses()},
+      {"report", poses(), "-o", poses()},
+      {"report", run(), "--earlier", calibration(), "-o", calibration()},
+      {"export", run(), "-o", run()},
+      {"apply", calibration(), poses(), "-o", poses()},
+      {"apply", calibration(), poses(), "-o", calibration()},
+      {"history", calibration(), poses(), "--figure", poses()}};
+  const std::string table = whole_file(poses()), kept = whole_file(run()), result = whole_file(calibration());
+  for (const std::vector<std::string>& slip : slips) {
+    const Finished refused = mgt(slip);
+    EXPECT_EQ(refused.exit_code, 2) << ::testing::PrintToString(slip);
+    EXPECT_THAT(refused.err, HasSubstr(slip.back()));
+    EXPECT_THAT(refused.err, HasSubstr("it would be overwritten: give another name")) << refused.err;
+    ASSERT_EQ(whole_file(poses()), table);
+    ASSERT_EQ(whole_file(run()), kept);
+    ASSERT_EQ(whole_file(calibration()), result);
+  }
+  EXPECT_THAT(mgt({"fit", link, "-o", hard}).err, HasSubstr(hard + " and " + link));
+}
+
+/// Also a run file that the command does not read holds a measurement.
+TEST_F(Outputs, NoCommandWritesOverARunFile) {
+  const std::string other = dir_ / "other.mgtrun", called = dir_ / "called.json";
+  std::filesystem::copy_file(run(), other);
+  std::filesystem::create_hard_link(other, called);
+  const std::string kept = whole_file(other);
+  for (const std::string& target : {other, called}) {
+    const Finished refused = mgt({"fit", poses(), "-o", target});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr(target + " is a run file"));
+    EXPECT_EQ(whole_file(target), kept);
+  }
+  const Finished named = mgt({"export", run(), "-o", dir_ / "new.mgtrun"});
+  EXPECT_EQ(named.exit_code, 2);
+  EXPECT_THAT(named.err, HasSubstr("has the name of a run file"));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "new.mgtrun"));
+}
+
+/// Standard output may be the file itself: what is said about it is not part of it.
+TEST_F(Outputs, WhatIsSaidOfAFileIsNotInIt) {
+  const std::string table = mgt({"export", run()}).out;
+  const Finished exported = mgt({"export", run(), "-o", "/dev/stdout"});
+  EXPECT_EQ(exported.out, table);
+  EXPECT_EQ(exported.err, "157 poses written to /dev/stdout\n");
+  const Finished page = mgt({"report", poses(), "-o", "/dev/stdout"});
+  EXPECT_THAT(page.out, ::testing::EndsWith("</html>\n"));
+  EXPECT_THAT(page.err, HasSubstr("report written to /dev/stdout\n"));
+  const Finished applied = mgt({"apply", calibration(), poses(), "-o", dir_ / "applied.csv"});
+  EXPECT_EQ(applied.out, "");
+  EXPECT_THAT(applied.err, HasSubstr("157 rows written to "));
+}
+
+}  // namespace
+}  // namespace mgtd::testing
