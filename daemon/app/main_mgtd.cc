@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <iostream>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "daemon/app/service.h"
 #include "daemon/config/config.h"
+#include "proto/standard_output.h"
 #include "proto/version.h"
 
 namespace {
@@ -20,9 +23,7 @@ int report(const mgtd::Error& error) {
   return error.code == mgtd::ErrorCode::io ? kExitIo : kExitUnavailable;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{
       "mgtd: drives a magnetic gradient tensor rig, calibrates it and streams the tensor\n\n"
       "  mgtd --config /etc/mgtd/mgtd.toml                  run\n"
@@ -38,7 +39,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
+    std::ostringstream out;
+    const int code = app.exit(error, out, std::cerr);
+    fmt::print("{}", out.str());
+    return code == 0 ? 0 : kExitUsage;
   }
   auto config = mgtd::daemon::config::load_config(config_file);
   if (!config) {
@@ -52,4 +56,10 @@ int main(int argc, char** argv) {
   }
   const auto ended = mgtd::daemon::app::run_service(*std::move(config));
   return ended ? 0 : report(ended.error());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return mgtd::with_standard_output("mgtd", kExitIo, [&] { return run(argc, argv); });
 }

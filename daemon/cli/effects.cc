@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <iostream>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "calib/effects/library/effect_page.h"
@@ -30,8 +31,8 @@ int run(const Session& session, const std::string& name) {
   if (session.json) {
     print_json(calib::effects::library::effects_json(families));
   } else {
-    std::cout << (name.empty() ? calib::effects::library::effect_list()
-                               : calib::effects::library::effect_page(families.front()));
+    fmt::print("{}", name.empty() ? calib::effects::library::effect_list()
+                                  : calib::effects::library::effect_page(families.front()));
   }
   return 0;
 }

@@ -5,12 +5,14 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "daemon/cli/command.h"
 #include "proto/nearest_word.h"
+#include "proto/standard_output.h"
 #include "proto/version.h"
 
 namespace {
@@ -83,9 +85,7 @@ constexpr const char* kDescription =
     "The same from a file:     mgt fit RUN.mgtrun -o CAL.json ; mgt apply CAL.json RUN.mgtrun\n\n"
     "Exit codes: 0 done, 1 answered \"no\", 2 usage or unreadable input, 3 daemon or instrument not reached.";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   using namespace mgtd::daemon::cli;
   CLI::App app{kDescription, "mgt"};
   app.set_version_flag("--version", mgtd::version());
@@ -138,7 +138,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream out;
+      app.exit(error, out, out);
+      fmt::print("{}", out.str());
+      return 0;
+    }
     const std::span words(argv, static_cast<std::size_t>(argc));
     session.json =
         session.json || std::find(words.begin(), words.end(), std::string_view("--json")) != words.end();
@@ -150,4 +155,11 @@ int main(int argc, char** argv) {
                   "end other programs, raise the limit of this one (ulimit -v), or give it fewer poses"});
   }
   return session.exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return mgtd::with_standard_output("mgt", mgtd::exit_code(mgtd::ErrorCode::io),
+                                    [&] { return run(argc, argv); });
 }

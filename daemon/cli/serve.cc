@@ -18,6 +18,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/serve/console/console_server.h"
+#include "proto/standard_output.h"
 #include "proto/version.h"
 
 namespace mgtd::daemon::cli {
@@ -106,7 +107,7 @@ int run_serve(const Session& session, const ServeArguments& args) {
     fmt::print("{}\n", url);
     fmt::print(stderr, "open this address in a browser on this computer; Ctrl-C ends\n");
   }
-  std::fflush(stdout);
+  flush_standard_output();
   boost::asio::signal_set signals(io, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](auto failed, int) {
     if (failed) return;

@@ -16,6 +16,7 @@
 #include "daemon/cli/progress.h"
 #include "daemon/cli/watch_panel.h"
 #include "daemon/serve/stream_reader.h"
+#include "proto/standard_output.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -45,13 +46,13 @@ class Gaps {
     if (!terminal_) return mention_when_due();
     const auto width = static_cast<std::size_t>(std::max(20, terminal_width(STDOUT_FILENO) - 1));
     fmt::print("\r{}\x1b[K", indented().substr(0, width));
-    std::fflush(stdout);
+    flush_standard_output();
   }
   /// Samples come again, or something else is to be printed below.
   void end() {
     if (line_.empty()) return;
     fmt::print("{}\n", terminal_ ? std::string() : indented());
-    std::fflush(stdout);
+    flush_standard_output();
     line_.clear();
   }
   void mention_when_due() {
@@ -59,7 +60,7 @@ class Gaps {
     if (terminal_ || line_.empty() || !pace_.due(now)) return;
     pace_.mention(now);
     fmt::print("{}, and no sample has come since\n", indented());
-    std::fflush(stdout);
+    flush_standard_output();
   }
 
  private:
@@ -92,7 +93,7 @@ void print_sample(const nlohmann::json& s) {
   fmt::print("{}  F {} nT  {}  cal {}{}\n", s.at("t").get<std::string>().substr(11, 12),
              number(s, "f_nT", 10), vector_or_tensor(s, sd),
              s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
-  std::fflush(stdout);
+  flush_standard_output();
 }
 
 /// Prints what the daemon says of the active calibration, each time that it changes from `shown`.
@@ -151,7 +152,7 @@ class PanelScreen {
     const TextLook look = stdout_look(session);
     const std::string text = shown(panel_.text(terminal_width(STDOUT_FILENO)), look);
     fmt::print("{}{}", back_over(drawn_), text);
-    std::fflush(stdout);
+    flush_standard_output();
     drawn_ = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   }
 
@@ -185,7 +186,7 @@ int run_watch(const Session& session, const WatchArguments& args) {
     }
     if (form == WatchForm::objects) {
       print_json(**object);
-      std::fflush(stdout);
+      flush_standard_output();
     } else if (form == WatchForm::lines) {
       show(**object, criticism, gaps);
     } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the programs write: never over what they read.
+// What the programs write: never over what they read, and never into nothing without a word.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -31,6 +31,12 @@ class Outputs : public ::testing::Test {
   [[nodiscard]] Finished mgt(std::vector<std::string> words) const {
     words.insert(words.begin(), program("mgt"));
     return run_program(std::move(words), dir_.path());
+  }
+  /// A command line with redirections.
+  [[nodiscard]] Finished shell(const std::string& line) const {
+    return run_program({"/bin/sh", "-c", "cd " + dir_.path() + " && exec " + line, program("mgt"),
+                        program("mgt-rig"), poses()},
+                       dir_.path());
   }
   [[nodiscard]] std::string poses() const { return dir_ / "poses.csv"; }
   [[nodiscard]] std::string run() const { return dir_ / "run.mgtrun"; }
@@ -102,6 +108,29 @@ TEST_F(Outputs, WhatIsSaidOfAFileIsNotInIt) {
   const Finished applied = mgt({"apply", calibration(), poses(), "-o", dir_ / "applied.csv"});
   EXPECT_EQ(applied.out, "");
   EXPECT_THAT(applied.err, HasSubstr("157 rows written to "));
+}
+
+/// A full disk behind standard output, as a redirection meets it.
+TEST_F(Outputs, AProgramThatCannotPrintSaysSo) {
+  for (const std::string& command :
+       {std::string("\"$0\" fit \"$2\""), std::string("\"$0\" apply cal.json \"$2\""),
+        std::string("\"$0\" export run.mgtrun"), std::string("\"$0\" plan"), std::string("\"$0\" effects"),
+        std::string("\"$0\" --help"), std::string("\"$0\" --version"),
+        std::string("\"$0\" fit \"$2\" --json"), std::string("\"$1\" table"), std::string("\"$1\" --help")}) {
+    const Finished full = shell(command + " > /dev/full");
+    EXPECT_EQ(full.exit_code, 2) << command << full.signal;
+    EXPECT_THAT(full.err, HasSubstr("cannot write to standard output: No space left on device")) << command;
+    const Finished closed = shell(command + " >&-");
+    EXPECT_EQ(closed.exit_code, 2) << command << closed.signal;
+    EXPECT_THAT(closed.err, HasSubstr("cannot write to standard output: Bad file descriptor")) << command;
+  }
+}
+
+/// What needs no standard output goes on without it, and no file that it opens is taken for it.
+TEST_F(Outputs, AFileIsWrittenWholeWithoutStandardOutput) {
+  const Finished exported = shell("\"$0\" export run.mgtrun -o copy.csv >&- 2>&-");
+  EXPECT_EQ(exported.exit_code, 0);
+  EXPECT_EQ(whole_file(dir_ / "copy.csv"), mgt({"export", run()}).out);
 }
 
 }  // namespace

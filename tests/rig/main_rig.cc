@@ -6,8 +6,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "proto/standard_output.h"
 #include "proto/version.h"
 #include "tests/rig/config_text.h"
 #include "tests/rig/fault.h"
@@ -355,9 +358,7 @@ void add_commands(CLI::App& app, Arguments& args) {
       ->required();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{kDescription, "mgt-rig"};
   app.set_version_flag("--version", mgtd::version());
   app.require_subcommand(1);
@@ -367,7 +368,16 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    std::ostringstream out;
+    const int code = app.exit(error, out, std::cerr);
+    fmt::print("{}", out.str());
+    return code == 0 ? 0 : 2;
   }
   return args.code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return mgtd::with_standard_output("mgt-rig", 2, [&] { return run(argc, argv); });
 }

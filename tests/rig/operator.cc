@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "proto/standard_output.h"
 #include "tests/rig/deed.h"
 #include "tests/rig/fault_client.h"
 
@@ -62,7 +63,7 @@ void Operator::serve(const json& prompt) {
     entry["roll_deg"] = entry["roll_deg"].get<double>() + 30;
   fmt::print("{}\n{}{}\n", prompt.at("text").get<std::string>(),
              again ? "  " + prompt.at("again").get<std::string>() + "\n" : "", entry.dump());
-  std::fflush(stdout);
+  flush_standard_output();
   static_cast<void>(say("run.enter", entry));
 }
 
@@ -90,7 +91,7 @@ void Operator::do_deed(const std::string& text) const {
     fmt::print("{}\n", line);
   }
   if (!done) fmt::print("cannot be done here\n");
-  std::fflush(stdout);
+  flush_standard_output();
   if (done) wait(asked->wait_s);
   static_cast<void>(say(done ? "run.resume" : "run.finish", json::object()));
 }

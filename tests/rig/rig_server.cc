@@ -21,6 +21,7 @@
 #include <istream>
 #include <sstream>
 
+#include "proto/standard_output.h"
 #include "tests/rig/bench_rig.h"
 #include "tests/rig/fault_client.h"
 #include "tests/rig/pty.h"
@@ -118,7 +119,7 @@ std::string Server::start() {
   tick();
   std::ofstream(options_.dir + "/ready") << getpid() << "\n";
   fmt::print("ready: {} ports in {}, {} times real time\n", ports_.size(), options_.dir, options_.speed_up);
-  std::fflush(stdout);
+  flush_standard_output();
   return {};
 }
 
