@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "calib/report/json_number.h"
 #include "calib/stats/probability.h"
@@ -69,9 +70,13 @@ std::string named_text(const validity::Change& change) {
 }
 
 std::string change_table(const validity::Change& change, std::size_t rows) {
-  std::string out = "were it one sensor that changed, would the others be as they were?";
-  for (std::size_t i = 0; i < change.others_log10_p.size(); ++i)
-    out += fmt::format("   s{} {}", i + 1, stats::p_phrase(change.others_log10_p[i]));
+  const PerSensor<double>& others = change.others_log10_p;
+  std::string out =
+      others.size() == 1
+          ? "alpha, beta and gamma are left out: one sensor does not tell them from a turn of the whole array"
+          : "were it one sensor that changed, would the others be as they were?";
+  for (std::size_t i = 0; others.size() > 1 && i < others.size(); ++i)
+    out += fmt::format("   s{} {}", i + 1, stats::p_phrase(others[i]));
   out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
                      "sigmas", "smallest to be seen");
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
@@ -88,7 +93,7 @@ std::string seen_text(const validity::Change& change) {
     const char* what;
     const char* keys;
     std::string unit;
-    double worst{0};
+    std::optional<double> worst{};
   };
   std::array<Kind, 4> kinds{{{"offset", " ix iy iz ", "nT"},
                              {"scale factor", " cx cy cz ", ""},
@@ -99,13 +104,14 @@ std::string seen_text(const validity::Change& change) {
     if (p.name[0] != 's' || space == std::string::npos) continue;
     for (Kind& kind : kinds) {
       if (std::string_view(kind.keys).find(p.name.substr(space) + " ") != std::string_view::npos)
-        kind.worst = std::max(kind.worst, p.seen);
+        kind.worst = std::max(kind.worst.value_or(0), p.seen);
     }
   }
   std::string out;
   for (const Kind& kind : kinds) {
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", kind.what,
-                       std::isfinite(kind.worst) ? amount(kind.worst, kind.unit, false) : "not at all");
+    out += fmt::format(
+        "{}{} {}", out.empty() ? "" : ", ", kind.what,
+        kind.worst && std::isfinite(*kind.worst) ? amount(*kind.worst, kind.unit, false) : "not at all");
   }
   return out;
 }

@@ -43,11 +43,18 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& W, const Eigen::MatrixXd& X) {
   return W - WX * inverse_of(X.transpose() * WX).W * WX.transpose();
 }
 
+/// Whether a change of this parameter can be told at all: the turn of a sensor that is alone is one of the
+/// common freedoms.
+bool can_be_told(const Evidence& e, Eigen::Index j) {
+  return e.sensors > 1 || j < sensor::alpha || j > sensor::gamma;
+}
+
 /// Chi-square of the change of one parameter alone; 0 when it is collinear with what was taken out of W.
 Eigen::VectorXd single_chi2(const Evidence& e, const Eigen::MatrixXd& W, const Eigen::MatrixXd& M) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(e.gain.cols());
   const Eigen::VectorXd pull = e.gain.transpose() * (M * e.difference);
   for (Eigen::Index j = 0; j < out.size(); ++j) {
+    if (!can_be_told(e, j)) continue;
     const auto a = e.gain.col(j);
     const double own = a.dot(M * a);
     if (own > kOwnEvidence * a.dot(W * a)) out[j] = pull[j] * pull[j] / own;
@@ -213,6 +220,7 @@ Change judge(const Evidence& e) {
   const bool own_rows = e.gain.rows() == choices && e.gain.isIdentity();
   const auto [moved, C] = own_rows ? without_common(e) : std::pair<Eigen::VectorXd, Eigen::MatrixXd>{};
   for (Eigen::Index j = 0; j < choices; ++j) {
+    if (!can_be_told(e, j)) continue;
     const auto a = e.gain.col(j);
     const double information = a.dot(W * a), sd = 1 / std::sqrt(information);
     const ShownSlot& slot = e.slots[static_cast<std::size_t>(j)];

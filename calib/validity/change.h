@@ -29,8 +29,9 @@ struct ParameterChange {
 struct Change {
   double chi2{0}, dof{0}, log10_p{0};  ///< that nothing changed: all parameters together
   double log10_p_single{0};  ///< the same by the parameter that accounts for most, corrected for the choice
-  PerSensor<double> others_log10_p{};       ///< that nothing but this sensor changed
-  std::vector<ParameterChange> parameters;  ///< largest |sigmas| first
+  PerSensor<double> others_log10_p{};  ///< that nothing but this sensor changed
+  /// Largest |sigmas| first; without the turn of a sensor that is alone, which is a turn of the whole array.
+  std::vector<ParameterChange> parameters;
   /// The fewest parameters that account for the difference, in the order in which they were found, each with
   /// its change when these alone changed. Empty when nothing changed or when it is spread over many.
   std::vector<ParameterChange> named;

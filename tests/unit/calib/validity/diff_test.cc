@@ -5,8 +5,10 @@
 
 #include "calib/effects/library/library.h"
 #include "calib/fit/method_choice/fit.h"
+#include "calib/report/change_report.h"
 #include "calib/report/diff_report.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
+#include "tests/unit/calib/validity/first_sensor.h"
 
 namespace mgtd::calib::validity {
 namespace {
@@ -50,6 +52,27 @@ TEST(Diff, TurnedArrayIsNoChange) {
   const DiffReport report = diff(calibrated(rig(), 27), calibrated(later, 28));
   EXPECT_FALSE(report.changed) << report::conclusion_text(report);
   EXPECT_THAT(report::remarks_of(report).back(), HasSubstr("turn of the whole array"));
+}
+
+/// The turn of a sensor that is alone is that of the array on its table: nothing is told of it, and no other
+/// parameter takes it over.
+TEST(Diff, OneSensorTellsNothingOfItsTurn) {
+  const auto alone = [](const Simulation& sim, std::uint64_t seed) {
+    return fit::method_choice::fit(testing::first_sensor_of(simulate(sim, 36, 121, seed)),
+                                   testing::at_the_origin())
+        ->calibration;
+  };
+  const DiffReport same = diff(alone(rig(), 31), alone(rig(), 32));
+  EXPECT_FALSE(same.changed) << report::conclusion_text(same);
+  EXPECT_EQ(same.change.parameters.size(), 9U);
+  for (const ParameterChange& p : same.change.parameters)
+    EXPECT_LT(p.sd, p.unit == "deg" ? 0.01 : 1.0) << p.name;
+  EXPECT_THAT(report::change_table(same.change, 12), HasSubstr("alpha, beta and gamma are left out"));
+  Simulation later = rig();
+  later.rig[0].offset_nT[1] += 5;
+  const DiffReport moved = diff(alone(rig(), 31), alone(later, 32));
+  ASSERT_EQ(moved.change.named.size(), 1U) << report::conclusion_text(moved);
+  EXPECT_EQ(moved.change.named.front().name, "s1 iy");
 }
 
 TEST(Diff, GaugesMayDiffer) {

@@ -6,6 +6,7 @@
 
 #include "calib/effects/library/library.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
+#include "tests/unit/calib/validity/first_sensor.h"
 
 namespace mgtd::calib::validity {
 namespace {
@@ -43,6 +44,18 @@ TEST(Check, RemountedArrayIsStillValid) {
   const auto report = check(calibrated(rig(), 7), dozen(later, 8), {});
   ASSERT_TRUE(report) << report.error().text();
   EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
+}
+
+TEST(Check, OneSensorTellsNothingOfItsTurn) {
+  const auto fitted = fit::method_choice::fit(testing::first_sensor_of(simulate(rig(), 36, 121, 11)),
+                                              testing::at_the_origin());
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  const auto report = check(fitted->calibration, testing::first_sensor_of(dozen(rig(), 12)), {});
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_TRUE(report->valid);
+  EXPECT_EQ(report->change.parameters.size(), 9U);
+  for (const ParameterChange& p : report->change.parameters) EXPECT_LT(p.seen, 100) << p.name;
+  EXPECT_THAT(report::validity_reasons(*report)[1], HasSubstr("turn of a sensor not at all"));
 }
 
 TEST(Check, SiteMayBeAnotherOne) {
