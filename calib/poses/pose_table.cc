@@ -13,6 +13,7 @@
 
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_list.h"
+#include "calib/poses/table_text.h"
 #include "proto/number.h"
 #include "proto/sha256.h"
 #include "proto/trimmed.h"
@@ -21,22 +22,6 @@ namespace mgtd::calib::poses {
 namespace {
 
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
-
-struct Cell {
-  std::string_view text;
-  std::size_t column{1};  ///< 1-based position of its first character in the line
-};
-
-std::vector<Cell> cells_of(std::string_view line) {
-  std::vector<Cell> cells;
-  std::size_t from = 0;
-  while (true) {
-    const std::size_t comma = std::min(line.find(',', from), line.size());
-    cells.push_back({trimmed(line.substr(from, comma - from)), from + 1});
-    if (comma == line.size()) return cells;
-    from = comma + 1;
-  }
-}
 
 /// What every row must have: readings, or the attitude at which they will be taken.
 enum class Rows { measured, planned };
@@ -83,14 +68,14 @@ class Reader {
  private:
   bool next_line();
   Result<void> read_header();
-  Result<void> count_sensors(const std::vector<Cell>& header);
+  Result<void> count_sensors(const std::vector<TableCell>& header);
   Result<void> refuse_missing();
-  Result<void> refuse_part_of_reference(const Pose& pose, const std::vector<Cell>& cells);
+  Result<void> refuse_part_of_reference(const Pose& pose, const std::vector<TableCell>& cells);
   [[nodiscard]] PoseColumn::Limits limits_of(const PoseColumn& column) const {
     return column.name == "f_nT" && with_reference_ ? field_limits_beside_reference() : column.limits;
   }
-  Result<Pose> read_row(const std::vector<Cell>& cells);
-  Result<void> read_names(Pose& pose, const std::vector<Cell>& cells);
+  Result<Pose> read_row(const std::vector<TableCell>& cells);
+  Result<void> read_names(Pose& pose, const std::vector<TableCell>& cells);
   [[nodiscard]] tl::unexpected<Error> complain(std::size_t column, std::string message,
                                                std::string remedy) const {
     return fail(ErrorCode::bad_input, fmt::format("{}:{}:{}: {}", file_, line_number_, column, message),
@@ -121,9 +106,7 @@ class Reader {
 
 bool Reader::next_line() {
   while (!text_.empty()) {
-    const std::size_t end = std::min(text_.find('\n'), text_.size());
-    line_ = text_.substr(0, end);
-    text_.remove_prefix(std::min(end + 1, text_.size()));
+    line_ = take_line(text_);
     ++line_number_;
     const std::string_view content = trimmed(line_);
     if (!content.empty() && !content.starts_with('#')) return true;
@@ -133,8 +116,7 @@ bool Reader::next_line() {
 
 /// What a file is whose first line cannot be a header; empty where it can.
 std::string_view no_table(std::string_view line) {
-  if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")) return "the file is UTF-16 text";
-  if (line.find('\0') != std::string_view::npos) return "the file is no text: it holds zero bytes";
+  if (const std::string_view what = no_text(line); !what.empty()) return what;
   if (line.starts_with('{')) return "the file is JSON, not a table";
   if (line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos)
     return "its columns are separated by semicolons";
@@ -151,10 +133,11 @@ Result<void> Reader::read_header() {
   if (const std::string_view what = no_table(line_); !what.empty()) {
     return fail(
         ErrorCode::bad_input, fmt::format("{}: {}", file_, what),
-        "give a *.mgtrun, or a pose table in CSV: commas between the columns, a decimal point, UTF-8");
+        "give a *.mgtrun, or a pose table in CSV: commas between the columns, a decimal point, UTF-8; "
+        "mgt import --columns MAP.toml takes tables of other programs");
   }
-  const std::vector<Cell> header = cells_of(line_);
-  for (const Cell& cell : header) {
+  const std::vector<TableCell> header = cells_of(line_, ',');
+  for (const TableCell& cell : header) {
     if (cell.text.empty()) return complain(cell.column, "a column has no name", "name it in the header row");
     if (column_of(cell.text) != kNowhere) {
       return complain(cell.column, fmt::format("column '{}' stands here twice", cell.text),
@@ -172,10 +155,10 @@ Result<void> Reader::read_header() {
   return refuse_missing();
 }
 
-/// As many sensors as the readings name. Where they name none, those of the cross are missed.
-Result<void> Reader::count_sensors(const std::vector<Cell>& header) {
+/// As many sensors as the readings name. Where they name none, those of the first are missed.
+Result<void> Reader::count_sensors(const std::vector<TableCell>& header) {
   std::size_t most = 0;
-  for (const Cell& cell : header) {
+  for (const TableCell& cell : header) {
     const auto of = of_sensor(cell.text);
     if (of && (of->number < 1 || of->number > kMostSensors)) {
       return complain(cell.column, fmt::format("{}: there is no sensor s{}", cell.text, of->number),
@@ -183,10 +166,10 @@ Result<void> Reader::count_sensors(const std::vector<Cell>& header) {
     }
     if (of && of->reading) most = std::max(most, of->number);
   }
-  if (rows_ == Rows::measured) sensors_ = most > 0 ? most : kSensorCount;
-  for (const Cell& cell : header) {
+  if (rows_ == Rows::measured) sensors_ = std::max<std::size_t>(most, 1);
+  for (const TableCell& cell : header) {
     const auto of = of_sensor(cell.text);
-    if (!of || of->number <= sensors_) continue;
+    if (!of || of->number <= sensors_ || (rows_ == Rows::measured && most == 0)) continue;
     if (rows_ == Rows::planned)
       return complain(
           cell.column, fmt::format("{}: the array has {}", cell.text, counted(sensors_)),
@@ -217,9 +200,12 @@ Result<void> Reader::refuse_missing() {
       return complain(1, fmt::format("missing column: {} (there is an s{})", missing, sensors_),
                       "number the sensors s1, s2, ... without a gap, each with x, y and z");
     return complain(
-        1, fmt::format("missing column: {}", missing),
+        1,
+        fmt::format("missing column: {}{}", missing,
+                    rows_ == Rows::measured && read == 0 ? ", and those of further sensors" : ""),
         column_of("s1_x_uT") == kNowhere
-            ? "add it to the header row; docs/pose-table.md lists every column"
+            ? "add it to the header row (docs/pose-table.md lists every column), or say which column is "
+              "which: mgt import --columns MAP.toml (docs/import.md)"
             : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
   }
   const auto there = std::count_if(kReference.begin(), kReference.end(),
@@ -233,10 +219,10 @@ Result<void> Reader::refuse_missing() {
 }
 
 /// In a row the reference is there or not.
-Result<void> Reader::refuse_part_of_reference(const Pose& pose, const std::vector<Cell>& cells) {
+Result<void> Reader::refuse_part_of_reference(const Pose& pose, const std::vector<TableCell>& cells) {
   if (!pose.ref_nT || pose.ref_nT->allFinite()) return {};
   for (const std::string_view name : kReference) {
-    const Cell& cell = cells[column_of(name)];
+    const TableCell& cell = cells[column_of(name)];
     if (cell.text.empty())
       return complain(cell.column, fmt::format("{} is empty, but not the whole reference field", name),
                       "give all three of ref_x_nT, ref_y_nT and ref_z_nT, or leave all three empty");
@@ -244,8 +230,8 @@ Result<void> Reader::refuse_part_of_reference(const Pose& pose, const std::vecto
   return {};
 }
 
-Result<void> Reader::read_names(Pose& pose, const std::vector<Cell>& cells) {
-  const Cell& number = cells[column_of("pose")];
+Result<void> Reader::read_names(Pose& pose, const std::vector<TableCell>& cells) {
+  const TableCell& number = cells[column_of("pose")];
   const auto value = parse_integer(number.text);
   if (!value || std::abs(*value) > 1'000'000'000) {
     return complain(number.column, fmt::format("pose '{}' is not a whole number", number.text),
@@ -262,7 +248,7 @@ Result<void> Reader::read_names(Pose& pose, const std::vector<Cell>& cells) {
   return {};
 }
 
-Result<Pose> Reader::read_row(const std::vector<Cell>& cells) {
+Result<Pose> Reader::read_row(const std::vector<TableCell>& cells) {
   if (cells.size() != names_.size()) {
     return complain(
         1, fmt::format("{} cells, but the header names {} columns", cells.size(), names_.size()),
@@ -318,7 +304,7 @@ Result<PoseTable> Reader::read() {
   table.poses.reserve(std::min(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')) + 1,
                                text_.size() / names_.size() + 1));
   while (next_line()) {
-    auto pose = read_row(cells_of(line_));
+    auto pose = read_row(cells_of(line_, ','));
     if (!pose) return tl::unexpected(pose.error());
     const auto [where, fresh] = line_of_pose.emplace(pose->number, line_number_);
     if (!fresh) {
@@ -366,10 +352,10 @@ std::string format_pose_table(const PoseTable& table) {
   }
   std::string out = with_utc ? "pose,set,t_utc" : "pose,set";
   for (const PoseColumn* column : columns) out += "," + column->name;
-  for (const std::string& name : covariates) out += "," + name;
+  for (const std::string& name : covariates) out += "," + cell_text(name);
   out += "\n";
   for (const Pose& pose : table.poses) {
-    out += fmt::format("{},{}", pose.number, pose.set);
+    out += fmt::format("{},{}", pose.number, cell_text(pose.set));
     if (with_utc) out += "," + (pose.t_utc ? format_utc(*pose.t_utc) : std::string{});
     for (const PoseColumn* column : columns) {
       const auto value = column->get(pose);

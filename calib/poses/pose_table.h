@@ -12,7 +12,8 @@
 /// a name of its own is a covariate.
 namespace mgtd::calib::poses {
 
-/// Tolerates CRLF, a byte order mark, blank lines, '#' comments and spaces around cells. Refuses, with
+/// Tolerates any end of line, a byte order mark, blank lines, '#' comments, cells in double quotes and spaces
+/// around cells. Refuses, with
 /// file:line:column and what to do: a missing column, a gap in the numbers of the sensors, a column named
 /// twice, a row of another length, text where a number belongs, nan, inf, a number that cannot be
 /// (PoseColumn::limits), an unreadable time, a pose number twice, a reference field without all three

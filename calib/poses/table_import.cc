@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "calib/poses/table_text.h"
 #include "proto/nearest_word.h"
 #include "proto/number.h"
 #include "proto/time.h"
@@ -15,13 +16,6 @@
 
 namespace mgtd::calib::poses {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
-
-struct ForeignCell {
-  std::string text;
-  std::size_t column{1};  ///< 1-based position of its first character in the line
-};
 
 /// The delimiter that a line is full of.
 char delimiter_of(std::string_view line) {
@@ -34,40 +28,6 @@ char delimiter_of(std::string_view line) {
   return best;
 }
 
-/// Up to the next delimiter outside quotes; "" inside quotes is a quote.
-std::vector<ForeignCell> cells_of(std::string_view line, char delimiter) {
-  const bool runs = delimiter == ' ';
-  const auto parts = [&](char c) {
-    return runs ? kBlanks.find(c) != std::string_view::npos : c == delimiter;
-  };
-  std::vector<ForeignCell> cells;
-  std::size_t at = 0;
-  while (true) {
-    while (runs && at < line.size() && parts(line[at])) ++at;
-    if (runs && at >= line.size()) return cells;
-    ForeignCell cell{.text = {}, .column = at + 1};
-    bool quoted = false;
-    for (; at < line.size() && (quoted || !parts(line[at])); ++at) {
-      if (line[at] != '"') {
-        cell.text += line[at];
-      } else if (quoted && at + 1 < line.size() && line[at + 1] == '"') {
-        cell.text += line[at++];
-      } else {
-        quoted = !quoted;
-      }
-    }
-    cell.text = trimmed(cell.text);
-    cells.push_back(std::move(cell));
-    if (at >= line.size()) return cells;
-    ++at;
-    if (runs) continue;
-    if (at == line.size()) {
-      cells.push_back({.text = {}, .column = at + 1});
-      return cells;
-    }
-  }
-}
-
 class Importer {
  public:
   Importer(std::string_view text, std::string_view file, const ImportMap& map)
@@ -76,16 +36,18 @@ class Importer {
   }
 
   Result<std::string> run() {
+    if (const std::string_view what = no_text(text_.substr(0, text_.find('\n'))); !what.empty())
+      return fail(ErrorCode::bad_input, fmt::format("{}: {}", file_, what), "save it as text in UTF-8");
     header_ = "pose" + std::string(map_.set.empty() ? "" : ",set");
     if (map_.time) header_ += map_.time->utc ? ",t_utc" : ",t_s";
-    for (const ImportedColumn& column : map_.columns) header_ += "," + column.to;
+    for (const ImportedColumn& column : map_.columns) header_ += "," + cell_text(column.to);
     while (next_line()) {
       if (line_number_ <= map_.skip || trimmed(line_).empty() || is_comment()) {
         leave_line();
         continue;
       }
       if (!delimiter_) delimiter_ = map_.delimiter.value_or(delimiter_of(line_));
-      const std::vector<ForeignCell> cells = cells_of(line_, *delimiter_);
+      const std::vector<TableCell> cells = cells_of(line_, *delimiter_);
       if (names_.empty()) {
         if (auto named = name_columns(cells); !named) return tl::unexpected(named.error());
         if (map_.header) {
@@ -110,9 +72,7 @@ class Importer {
 
   bool next_line() {
     if (text_.empty()) return false;
-    const std::size_t end = std::min(text_.find('\n'), text_.size());
-    line_ = text_.substr(0, end);
-    text_.remove_prefix(std::min(end + 1, text_.size()));
+    line_ = take_line(text_);
     ++line_number_;
     return true;
   }
@@ -126,25 +86,34 @@ class Importer {
   }
   void leave_line() { out_ += "\n"; }
 
-  Result<void> name_columns(const std::vector<ForeignCell>& cells) {
+  Result<void> name_columns(const std::vector<TableCell>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i)
       names_.push_back(map_.header ? cells[i].text : std::to_string(i + 1));
     for (const ImportedColumn& column : map_.columns) {
-      const auto at = place_of(column.from);
+      const auto at = place_of(column.from, cells);
       if (!at) return tl::unexpected(at.error());
       places_.push_back(*at);
     }
     if (map_.time && !map_.time->from.empty()) {
-      const auto at = place_of(map_.time->from);
+      const auto at = place_of(map_.time->from, cells);
       if (!at) return tl::unexpected(at.error());
       time_at_ = *at;
     }
     return {};
   }
 
-  [[nodiscard]] Result<std::size_t> place_of(const std::string& name) const {
+  /// `header`: the cells that names_ were taken from.
+  [[nodiscard]] Result<std::size_t> place_of(const std::string& name,
+                                             const std::vector<TableCell>& header) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
-    if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+    if (found != names_.end()) {
+      const auto again = std::find(found + 1, names_.end(), name);
+      if (again == names_.end()) return static_cast<std::size_t>(found - names_.begin());
+      return complain(header[static_cast<std::size_t>(again - names_.begin())].column,
+                      fmt::format("column '{}' stands here twice", name),
+                      "rename one of them in the header; or name columns by number: `header = false`, and "
+                      "`skip` for the lines before the first row");
+    }
     const auto near = map_.header ? nearest_word(name, names_) : std::nullopt;
     return complain(1,
                     fmt::format("there is no column '{}'{}", name,
@@ -153,22 +122,23 @@ class Importer {
                                 : fmt::format("without a header columns are called 1 to {}", names_.size()));
   }
 
-  Result<double> number(const ForeignCell& cell, const std::string& name) const {
+  Result<double> number(const TableCell& cell, const std::string& name) const {
     std::string text = cell.text;
     if (map_.decimal != '.') std::replace(text.begin(), text.end(), map_.decimal, '.');
     const auto value = parse_number(text);
     if (value) return *value;
     return complain(cell.column, fmt::format("'{}' in column {} is not a number", cell.text, name),
-                    "look at `delimiter`, `decimal` and `skip` of the map");
+                    "look at `delimiter`, `decimal` and `skip` of the map; where nothing was measured the "
+                    "cell is empty, and a row without a reading is left out");
   }
 
-  Result<std::string> time(const std::vector<ForeignCell>& cells) {
+  Result<std::string> time(const std::vector<TableCell>& cells) {
     const ImportedTime& time = *map_.time;
     double t_s = 0;
     if (time.from.empty()) {
       t_s = static_cast<double>(rows_ - 1) / time.rate_hz.value_or(1);
     } else if (time.utc) {
-      const ForeignCell& cell = cells[time_at_];
+      const TableCell& cell = cells[time_at_];
       const auto t = parse_utc(cell.text);
       if (!t) return complain(cell.column, t.error().message, t.error().remedy);
       if (last_utc_ && *t < *last_utc_)
@@ -190,7 +160,7 @@ class Importer {
     return fmt::format("{}", t_s);
   }
 
-  Result<void> take(const std::vector<ForeignCell>& cells) {
+  Result<void> take(const std::vector<TableCell>& cells) {
     if (cells.size() != names_.size())
       return complain(1, fmt::format("{} cells where {} are expected", cells.size(), names_.size()),
                       "look at `delimiter` of the map, or correct this line");
@@ -210,7 +180,7 @@ class Importer {
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const ImportedColumn& column = map_.columns[i];
-      const ForeignCell& cell = cells[places_[i]];
+      const TableCell& cell = cells[places_[i]];
       row += ",";
       if (cell.text.empty()) continue;
       const auto value = number(cell, column.from);

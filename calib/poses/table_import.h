@@ -13,9 +13,9 @@
 namespace mgtd::calib::poses {
 
 /// Cells may stand in double quotes. Refuses, with file:line:column and what to do: a column that is not
-/// there (the error lists those that are), a row of another length, text where a number belongs, a time that
-/// cannot be read or goes back, and a file without rows. An empty cell stays empty. Does not judge whether
-/// the values make sense: parse_pose_table does.
+/// there (the error lists those that are) or there twice, a row of another length, text where a number
+/// belongs, a time that cannot be read or goes back, text in UTF-16, and a file without rows. An empty cell
+/// stays empty. Does not judge whether the values make sense: parse_pose_table does.
 [[nodiscard]] Result<std::string> import_table(std::string_view text, std::string_view file,
                                                const ImportMap& map);
 

@@ -38,6 +38,43 @@ Error error_of(const std::string& text) {
   return table.error();
 }
 
+/// Spreadsheets and data frames write so.
+TEST(PoseTable, ReadsCellsInQuotes) {
+  std::string quoted;
+  for (const char c : small())
+    quoted += c == ',' ? std::string("\",\"") : c == '\n' ? "\"\n\"" : std::string(1, c);
+  quoted = "\"" + quoted.substr(0, quoted.size() - 1);
+  const auto plain = parse_pose_table(small(), "poses.csv"), table = parse_pose_table(quoted, "poses.csv");
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(data_hash(*table), data_hash(*plain));
+  const auto named = parse_pose_table(small(",\"I, \"\"motor\"\"\"", ",4"), "poses.csv");
+  ASSERT_TRUE(named) << named.error().text();
+  EXPECT_EQ(named->poses.front().covariates.at("I, \"motor\""), 4);
+  const auto again = parse_pose_table(format_pose_table(*named), "poses.csv");
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(again->poses.front().covariates, named->poses.front().covariates);
+}
+
+TEST(PoseTable, LinesMayEndInAnyWay) {
+  for (const char* end : {"\r", "\r\n"}) {
+    std::string text;
+    for (const char c : small()) text += c == '\n' ? std::string(end) : std::string(1, c);
+    const auto table = parse_pose_table(text + "x", "poses.csv");
+    ASSERT_FALSE(table);
+    EXPECT_THAT(table.error().message, HasSubstr("poses.csv:3:1: 1 cells"));
+    EXPECT_TRUE(parse_pose_table(text, "poses.csv"));
+  }
+}
+
+/// How many sensors there are is not known where no reading is named.
+TEST(PoseTable, ATableOfOtherColumnsIsToldOfTheImport) {
+  const Error other = error_of("pose,x,y,z\n1,2,3,4\n");
+  EXPECT_THAT(other.message,
+              HasSubstr("missing column: s1_x_nT, s1_y_nT, s1_z_nT, and those of further sensors"));
+  EXPECT_THAT(other.remedy, HasSubstr("mgt import --columns MAP.toml"));
+  EXPECT_THAT(error_of("pose;x\n1;2\n").remedy, HasSubstr("mgt import --columns MAP.toml"));
+}
+
 TEST(PoseTable, ReadsReadingsAnglesAndTimes) {
   const auto table = parse_pose_table(small(",azimuth_deg,t_s,t_utc,f_nT,sense,s2_T_degC,battery_V",
                                             ",90,12.5,2026-11-21T10:00:00Z,50000.25,-1,21.5,12.7"),

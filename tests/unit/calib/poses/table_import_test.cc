@@ -81,6 +81,36 @@ TEST(TableImport, AnEmptyCellStaysEmpty) {
   EXPECT_THAT(*out, HasSubstr("\n1,1,2,3,\n2,4,5,6,26.85"));
 }
 
+TEST(TableImport, LinesMayEndAsOnAnOldMacintosh) {
+  const auto out = import_table("a,b,c\r1,2,3\r4,5,6", "f", three_axes("a", "b", "c"));
+  ASSERT_TRUE(out) << out.error().text();
+  EXPECT_EQ(*out, "pose,s1_x_nT,s1_y_nT,s1_z_nT\n1,1,2,3\n2,4,5,6\n");
+}
+
+/// Which of the two is meant nobody can tell; one that the map does not ask for may be there twice.
+TEST(TableImport, AColumnThatIsThereTwiceIsRefused) {
+  const auto out = import_table("# log\na,b,c,b\n1,2,3,4\n", "f", three_axes("a", "b", "c"));
+  ASSERT_FALSE(out);
+  EXPECT_THAT(out.error().message, HasSubstr("f:2:7: column 'b' stands here twice"));
+  EXPECT_TRUE(import_table("a,b,c,d,d\n1,2,3,4,5\n", "f", three_axes("a", "b", "c")));
+  ImportMap timed = three_axes("a", "b", "c");
+  timed.time = ImportedTime{.from = "t"};
+  EXPECT_FALSE(import_table("t,a,b,c,t\n0,1,2,3,1\n", "f", timed));
+}
+
+TEST(TableImport, TheRemedyIsOfTheFile) {
+  const std::string wide(
+      "\xFF\xFE"
+      "a\0,\0b\0\n\0",
+      10);
+  const auto utf16 = import_table(wide, "f", three_axes("a", "b", "c"));
+  ASSERT_FALSE(utf16);
+  EXPECT_THAT(utf16.error().text(), HasSubstr("f: the file is UTF-16 text; save it as text in UTF-8"));
+  const auto nan = import_table("a,b,c\n1,nan,3\n", "f", three_axes("a", "b", "c"));
+  ASSERT_FALSE(nan);
+  EXPECT_THAT(nan.error().remedy, HasSubstr("where nothing was measured the cell is empty"));
+}
+
 struct Refusal {
   const char* text;
   const char* where;
