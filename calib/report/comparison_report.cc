@@ -11,12 +11,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/explain_json.h"
 #include "calib/report/noise_text.h"
 #include "calib/report/outlier_text.h"
 #include "calib/report/residual_words.h"
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
+#include "proto/units.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -82,7 +84,8 @@ std::string noise_text(const criticism::tests::Comparison& c) {
   }
   out += fmt::format("poses      correlated {:.2f} from one to the next", c.noise.rho);
   if (c.table_sd_deg > 0)
-    out += fmt::format("; table angles good to {:.3g} deg each, estimated", c.table_sd_deg);
+    out += fmt::format("; table angles good to {:.3g} deg{} each, estimated", c.table_sd_deg,
+                       fit::joint::or_more(to_rad(c.table_sd_deg)));
   return out + "\n";
 }
 

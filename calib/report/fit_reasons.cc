@@ -13,6 +13,7 @@
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/checks/identifiability_text.h"
 #include "calib/fit/joint/joint_findings.h"
+#include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/outlier_text.h"
 #include "calib/report/reference_text.h"
 #include "calib/report/wandering_text.h"
@@ -137,6 +138,11 @@ std::vector<std::string> weak_texts(const fit::FitReport& report) {
 }
 
 std::string rough_table_text(double estimated_rad, double stated_rad) {
+  if (!fit::joint::or_more(estimated_rad).empty())
+    return fmt::format(
+        "the table angles are off by {:.2g} deg a pose or more, where {:.2g} deg was told, and count for "
+        "nothing: check the sense, the order and the zero of every table axis",
+        to_deg(estimated_rad), to_deg(stated_rad));
   return fmt::format(
       "the table angles are good to {0:.2g} deg a pose, estimated, where {1:.2g} deg was told: --table-sd "
       "{0:.2g} tells it; of a table with a motor, check the zero and the sense of each axis",

@@ -10,13 +10,13 @@
 
 #include "calib/calibration/tensor.h"
 #include "calib/fit/joint/joint_findings.h"
+#include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/calibration_text.h"
 #include "calib/report/column_blocks.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_summary_text.h"
 #include "calib/report/reference_text.h"
 #include "calib/report/residual_words.h"
-#include "calib/report/shown_number.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::report {
@@ -27,12 +27,20 @@ struct ErrorRow {
   NamedRow field, tensor;
 };
 
+/// At most eight characters, so that a column of any errors stays apart from the next.
+std::string error_cell(double rmse) {
+  if (std::isnan(rmse)) return "-";
+  return rmse < 9'999 ? fmt::format("{:.3f}", rmse)
+         : rmse < 1e7 ? fmt::format("{:.0f}", rmse)
+                      : fmt::format("{:.1e}", rmse);
+}
+
 ErrorRow error_row(const std::string& stage, const fit::ErrorSummary& errors) {
   ErrorRow row{{stage, {}}, {stage, {}}};
-  for (const double rmse : errors.total_field_rmse_nT) row.field.cells.push_back(fmt::format("{:.3f}", rmse));
+  for (const double rmse : errors.total_field_rmse_nT) row.field.cells.push_back(error_cell(rmse));
   const auto all = components(errors.tensor_rmse_nT_per_m);
   const bool told = !std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); });
-  for (const double rmse : all) row.tensor.cells.push_back(told ? shown_number(rmse, 9, 3) : "");
+  for (const double rmse : all) row.tensor.cells.push_back(told ? error_cell(rmse) : "");
   return row;
 }
 
@@ -137,8 +145,9 @@ std::string heading(const fit::FitReport& report) {
                        report.residual_nT > 0 ? "readings and scalar reference" : "|b| less F");
   }
   if (report.table_sd_rad > 0) {
-    out += fmt::format("table: each angle good to {:.4f} deg, estimated; chi-square {:.4g} for {:.0f}\n",
-                       to_deg(report.table_sd_rad), report.chi2_table, report.dof_table);
+    out += fmt::format("table: each angle good to {:.4f} deg{}, estimated; chi-square {:.4g} for {:.0f}\n",
+                       to_deg(report.table_sd_rad), fit::joint::or_more(report.table_sd_rad),
+                       report.chi2_table, report.dof_table);
   }
   if (report.joint && report.joint->reference_scatter)
     out += fmt::format("reference: {}\n", reference_scatter_text(*report.joint->reference_scatter));

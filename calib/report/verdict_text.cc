@@ -14,6 +14,7 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/effect_family.h"
 #include "calib/fit/joint/single_samples.h"
+#include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/explain_note_text.h"
 #include "calib/report/noise_text.h"
 #include "calib/report/residual_words.h"
@@ -67,8 +68,9 @@ criticism::tests::Candidate as_fitted(const criticism::search::Round& round) {
 /// each pose its own attitude.
 std::string fall_text(const criticism::search::Round& round, const fit::joint::JointFit* before) {
   if (before != nullptr && round.fit && round.added.where == "table")
-    return fmt::format("the angles of the table scatter by {:.3g} instead of {:.3g} deg",
-                       to_deg(round.fit->table_sd_rad), to_deg(before->table_sd_rad));
+    return fmt::format("the angles of the table scatter by {:.3g} instead of {:.3g} deg{}",
+                       to_deg(round.fit->table_sd_rad), to_deg(before->table_sd_rad),
+                       fit::joint::or_more(before->table_sd_rad));
   const std::string from = fmt::format("{:.3g}", round.rms_before_nT),
                     to = fmt::format("{:.3g}", round.rms_after_nT);
   if (from == to) return fmt::format("the residual stays at {} nT", to);

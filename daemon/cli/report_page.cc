@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/choice_text.h"
 #include "calib/report/comparison_report.h"
 #include "calib/report/figures/escaped.h"
@@ -190,7 +191,8 @@ std::string noise_section(const ReportContent& c) {
                                  m.noise.revisits->pairs, std::sqrt(m.noise.revisits->ratio),
                                  calib::stats::p_phrase(m.noise.revisits->log10_p))});
   if (m.table_sd_deg > 0)
-    rows.push_back({"table angles", fmt::format("good to {:.3g}° each, estimated", m.table_sd_deg)});
+    rows.push_back({"table angles", fmt::format("good to {:.3g}°{} each, estimated", m.table_sd_deg,
+                                                calib::fit::joint::or_more(to_rad(m.table_sd_deg)))});
   out += html_table({"", ""}, rows, true);
   Rows axes;
   for (Eigen::Index s = 0; s < m.axis_noise_nT.rows(); ++s) {

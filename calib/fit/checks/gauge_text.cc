@@ -5,6 +5,7 @@
 
 #include "calib/calibration/scale_gauge.h"
 #include "calib/fit/joint/joint_findings.h"
+#include "calib/fit/joint/table_ceiling.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::fit::checks {
@@ -67,11 +68,12 @@ std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double ta
   } else {
     const bool convention = gauge.angles == joint::AngleCoverage::one_axis && !gauge.declination_known;
     text = fmt::format(
-        "{} (table angles to {:.3g} deg a pose, estimated); common rotation known to {:.2g} deg about X, "
+        "{} (table angles to {:.3g} deg{} a pose, estimated); common rotation known to {:.2g} deg about X, "
         "{:.2g} about Y",
         gauge.angles == joint::AngleCoverage::full ? "platform frame is the table frame"
                                                    : "platform by the table's one axis",
-        to_deg(table_sd_rad), to_deg(rotation_sd_rad[0]), to_deg(rotation_sd_rad[1]));
+        to_deg(table_sd_rad), joint::or_more(table_sd_rad), to_deg(rotation_sd_rad[0]),
+        to_deg(rotation_sd_rad[1]));
     text += convention ? "; about Z by convention mean gamma = 0, because the angles turn about one axis only"
                        : fmt::format(", {:.2g} about Z", to_deg(rotation_sd_rad[2]));
     if (gauge.declination_known) text += "; declination as given";

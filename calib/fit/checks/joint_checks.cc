@@ -13,6 +13,7 @@
 #include "calib/fit/checks/identifiability_text.h"
 #include "calib/fit/checks/mirrored_text.h"
 #include "calib/fit/joint/joint_findings.h"
+#include "calib/fit/joint/table_ceiling.h"
 
 namespace mgtd::calib::fit::checks {
 namespace {
@@ -70,8 +71,8 @@ Check mounting_check(const FitReport& r) {
 Check table_check(const FitReport& r, const FitOptions& options) {
   const double limit = table_limit_rad(options.table_sd_rad);
   return {"table angles", r.table_sd_rad <= limit,
-          fmt::format("the sensors put the attitudes {:.3f} deg rms from the table's angles",
-                      to_deg(r.table_sd_rad)),
+          fmt::format("the sensors put the attitudes {:.3f} deg rms{} from the table's angles",
+                      to_deg(r.table_sd_rad), joint::or_more(r.table_sd_rad)),
           limit > kByHand_rad ? fmt::format("{:.3f} deg, {} times the table's {:.3f} deg", to_deg(limit),
                                             kMaxTableSigmas, to_deg(options.table_sd_rad))
                               : fmt::format("{:.3f} deg, of scales read by hand", to_deg(limit)),

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/table_ceiling.h"
+
 namespace mgtd::calib::fit::joint {
 namespace {
 
 constexpr double kSettled = 0.01;  ///< relative change of a noise estimate that no longer matters
-const double kTableFloor_rad = to_rad(0.0005), kTableCeiling_rad = to_rad(10);
+const double kTableFloor_rad = to_rad(0.0005);
 
 /// Changes of an estimate that its own uncertainty makes meaningless: a tenth of it.
 double settled(double freedom) { return std::max(kSettled, 0.1 / std::sqrt(2 * std::max(freedom, 1.0))); }
