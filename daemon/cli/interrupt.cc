@@ -27,6 +27,7 @@ void catch_interrupts(std::initializer_list<int> signals) {
   struct sigaction action {};
   action.sa_handler = [](int) { came = 1; };
   sigemptyset(&action.sa_mask);
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int signal : signals) {
     sigaddset(&caught(), signal);
     ::sigaction(signal, &action, nullptr);

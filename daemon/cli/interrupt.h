@@ -4,7 +4,8 @@
 
 namespace mgtd::daemon::cli {
 
-/// After this call these signals are remembered and no longer end the program.
+/// After this call the first of each of these signals is remembered and no longer ends the program; a second
+/// one does, whatever it waits for.
 void catch_interrupts(std::initializer_list<int> signals);
 /// Whether one came.
 [[nodiscard]] bool interrupted();

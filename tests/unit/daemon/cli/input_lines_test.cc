@@ -59,6 +59,18 @@ TEST_F(TypedLines, ASignalJustBeforeTheWaitEndsIt) {
       ::testing::ExitedWithCode(0), "");
 }
 
+/// Whatever the program waits for after the first, a daemon that hangs for instance.
+TEST_F(TypedLines, ASecondSignalEndsTheProgram) {
+  EXPECT_EXIT(
+      {
+        catch_interrupts({SIGUSR1});
+        std::raise(SIGUSR1);
+        std::raise(SIGUSR1);
+        std::_Exit(0);
+      },
+      ::testing::KilledBySignal(SIGUSR1), "");
+}
+
 TEST_F(TypedLines, ASignalDuringTheWaitEndsIt) {
   EXPECT_EXIT(
       {
