@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/calibration/calibration.h"
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 
 /// This presents a calibration to a person. `width` is the number of columns that a table may have.
 namespace mgtd::calib::report {

@@ -12,7 +12,6 @@
 #include "calib/effects/effect_spec.h"
 #include "calib/report/discovery_reason.h"
 #include "calib/report/json_number.h"
-#include "calib/report/wrapped.h"
 #include "calib/stats/probability.h"
 #include "proto/shell_word.h"
 
@@ -220,10 +219,10 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
   const auto to = std::back_inserter(out);
   out += "\n";
   if (laws > 1) fmt::format_to(to, "law {} of {}\n", number, laws);
-  out += wrapped(fmt::format("d = {:.1f}; chance that the whole search finds as much in noise: p {}", law.d,
-                             stats::p_text(law.log10_p)));
-  out += wrapped("depends on " + shares_text(law.covariates));
-  out += wrapped("acts on " + shares_text(law.where));
+  fmt::format_to(to, "d = {:.1f}; chance that the whole search finds as much in noise: p {}\n", law.d,
+                 stats::p_text(law.log10_p));
+  out += "depends on " + shares_text(law.covariates) + "\n";
+  out += "acts on " + shares_text(law.where) + "\n";
   fmt::format_to(to, "\n{:>2}  {:<42} {:<9} {:>5} {:>8} {:>2} {:>2}\n", "", "formula", "where", "P", "fall",
                  "k", "C");
   for (std::size_t i = 0; i < std::min(kFormulasListed, law.formulas.size()); ++i) {
@@ -256,15 +255,15 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
     } else {
       told += "; some are the same on these poses, however large";
     }
-    out += "\n" + wrapped(told);
+    out += "\n" + told + "\n";
   }
-  if (law.shape) out += wrapped(shape_text(*law.shape));
+  if (law.shape) out += shape_text(*law.shape) + "\n";
   if (law.halves_ratio)
-    out += wrapped(fmt::format("one half of the poses shows {:.2f} times the size that the other half shows",
-                               *law.halves_ratio));
+    fmt::format_to(to, "one half of the poses shows {:.2f} times the size that the other half shows\n",
+                   *law.halves_ratio);
   if (law.held_out_fall)
-    out += wrapped(fmt::format("on poses that took no part in the search chi-square {} by {:.0f}",
-                               *law.held_out_fall > 0 ? "falls" : "RISES", std::abs(*law.held_out_fall)));
+    fmt::format_to(to, "on poses that took no part in the search chi-square {} by {:.0f}\n",
+                   *law.held_out_fall > 0 ? "falls" : "RISES", std::abs(*law.held_out_fall));
   if (law.extrapolation_spread && *law.extrapolation_spread > kDisagree)
     fmt::format_to(to, "OUTSIDE what the run covered the formulas disagree by {:.0f} %: do not extrapolate\n",
                    100 * *law.extrapolation_spread);
@@ -318,15 +317,15 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
 
 std::string to_text(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before,
                     const std::vector<std::string>& kept) {
-  std::string out = wrapped(headline(r));
+  std::string out = headline(r) + "\n";
   const auto to = std::back_inserter(out);
-  out += wrapped(fmt::format(
-      "residual {:.3g} nT, noise {:.3g} nT; {} formulas (grammar {}), {} questions with their places",
-      r.residual_nT, r.noise_nT, r.formulas, r.grammar_hash, r.hypotheses));
+  fmt::format_to(
+      to, "residual {:.3g} nT, noise {:.3g} nT; {} formulas (grammar {}), {} questions with their places\n",
+      r.residual_nT, r.noise_nT, r.formulas, r.grammar_hash, r.hypotheses);
   if (r.searched < r.poses)
-    out += wrapped(fmt::format("{} of the {} poses are searched, evenly chosen: a search takes no more",
-                               r.searched, r.poses));
-  if (r.wanders) out += wrapped("the offsets of this run wander: slow laws are held against that");
+    fmt::format_to(to, "{} of the {} poses are searched, evenly chosen: a search takes no more\n", r.searched,
+                   r.poses);
+  if (r.wanders) out += "the offsets of this run wander: slow laws are held against that\n";
   const bool show = r.finding != LawFinding::pass && !r.laws.empty() && r.laws.front().stands_out;
   // Of what is not believed the first says enough.
   const std::size_t told = r.finding == LawFinding::noise_like ? 1 : r.laws.size();
@@ -344,9 +343,9 @@ std::string to_text(const DiscoveryReport& r, const std::string& run, const std:
     out += "\n";
   }
   out += "\n";
-  if (const std::string reason = reason_text(r); !reason.empty()) out += wrapped("why: " + reason);
-  if (!kept.empty()) out += wrapped(fmt::format("kept in {}: {}", run, fmt::join(kept, ", ")));
-  out += wrapped("next: " + what_next(r, run, kept));
+  if (const std::string reason = reason_text(r); !reason.empty()) out += "why: " + reason + "\n";
+  if (!kept.empty()) fmt::format_to(to, "kept in {}: {}\n", run, fmt::join(kept, ", "));
+  out += "next: " + what_next(r, run, kept) + "\n";
   for (const std::string& command : commands(r, run, before, kept)) out += "  " + command + "\n";
   return out;
 }

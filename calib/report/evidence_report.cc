@@ -14,7 +14,6 @@
 #include "calib/report/pose_points_report.h"
 #include "calib/report/shown_number.h"
 #include "calib/report/size_text.h"
-#include "calib/report/wrapped.h"
 #include "calib/stats/probability.h"
 
 namespace mgtd::calib::report {
@@ -48,10 +47,9 @@ void tell_poses(const criticism::tests::Candidate& c, std::string& out) {
   std::vector<int> poses = c.poses;
   const std::size_t all = poses.size();
   if (poses.size() > kPosesInText) poses.resize(kPosesInText);
-  std::string text = fmt::format("{} {} half of the evidence: {}{}; the heaviest has {:.0f} % of it", all,
-                                 all == 1 ? "pose carries" : "poses carry", fmt::join(poses, ", "),
-                                 all > poses.size() ? ", ..." : "", 100 * c.largest_pose);
-  out += wrapped(text, 0);
+  out += fmt::format("{} {} half of the evidence: {}{}; the heaviest has {:.0f} % of it\n", all,
+                     all == 1 ? "pose carries" : "poses carry", fmt::join(poses, ", "),
+                     all > poses.size() ? ", ..." : "", 100 * c.largest_pose);
 }
 
 void tell_maps(const Evidence& e, std::string& out) {
@@ -122,7 +120,7 @@ std::string to_text(const Evidence& e) {
   tell_maps(e, out);
   tell_alternatives(e, out);
   if (!e.tells.empty()) out += "\nwhat would tell:\n";
-  for (const Evidence::Tell& tell : e.tells) out += fmt::format("  {}\n", tell.effect) + wrapped(tell.by, 4);
+  for (const Evidence::Tell& tell : e.tells) out += fmt::format("  {}\n    {}\n", tell.effect, tell.by);
   return out;
 }
 

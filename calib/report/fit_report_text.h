@@ -3,7 +3,7 @@
 #include <string>
 
 #include "calib/fit/fit_report.h"
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 
 namespace mgtd::calib::report {
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 #include "daemon/cli/progress.h"
 
 namespace mgtd::daemon::cli {

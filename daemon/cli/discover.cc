@@ -73,7 +73,7 @@ int run_discover(const Session& session, const DiscoverArguments& args) {
     for (const auto& law : found->laws)
       for (const std::string& spec : law.formulas.front().specs) fmt::print("{}\n", spec);
   } else {
-    fmt::print("{}", calib::report::to_text(*found, args.run, before, names));
+    print_text(session, calib::report::to_text(*found, args.run, before, names));
   }
   if (args.keep && !session.json && names.empty())
     fmt::print("the search is kept in {}: mgt report shows it; there is no formula to keep\n", args.run);

@@ -7,7 +7,7 @@
 #include <array>
 #include <regex>
 
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 
 namespace mgtd::daemon::cli {
 namespace {

@@ -56,7 +56,7 @@ int run_why(const Session& session, WhyArguments args) {
     if (args.poses) out["figure"] = calib::report::words_json(calib::report::evidence_of(*evidence));
     print_json(out);
   } else {
-    fmt::print("{}", calib::report::to_text(*evidence));
+    print_text(session, calib::report::to_text(*evidence));
   }
   return 0;
 }

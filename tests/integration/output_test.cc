@@ -110,6 +110,14 @@ TEST_F(Outputs, WhatIsSaidOfAFileIsNotInIt) {
   EXPECT_THAT(applied.err, HasSubstr("157 rows written to "));
 }
 
+/// Whoever searches a file for words finds them in one line.
+TEST_F(Outputs, LinesStayWholeInAPipe) {
+  const std::string found = mgt({"discover", poses(), "--quick"}).out;
+  EXPECT_THAT(found, ::testing::ContainsRegex("residual [^\n]* questions with their places\n"));
+  const std::string evidence = mgt({"why", "axis.cubic", poses()}).out;
+  EXPECT_THAT(evidence, ::testing::ContainsRegex("carry half of the evidence[^\n]* of it\n"));
+}
+
 /// A full disk behind standard output, as a redirection meets it.
 TEST_F(Outputs, AProgramThatCannotPrintSaysSo) {
   for (const std::string& command :

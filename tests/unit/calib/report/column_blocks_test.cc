@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 
 namespace mgtd::calib::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "calib/report/wrapped.h"
+#include "calib/report/seen_width.h"
 
 namespace mgtd::daemon::cli {
 namespace {
