@@ -47,7 +47,10 @@ Result<void> RunFsm::possible(Request request) const {
       if (measured) return refuse("all poses are measured", "wait, or abort");
       if (disk_.unanswered) return refuse("a pose is being stored", "ask again in a moment");
       if (hands_.entered() || (config_.by_hand && progress_.last())) return {};
-      return refuse("nothing was entered by hand yet that could be entered again", "");
+      return refuse(
+          "there is no entry that could be asked for again: none was made yet, or the last one is asked for "
+          "again already",
+          "mgt run status shows what is asked for now");
     case Request::finish:
       if (measured) return refuse("all poses are measured", "wait, or abort");
       if (progress_.done() < config_.fewest_poses)

@@ -171,6 +171,9 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   EXPECT_EQ(bench.status->prompt->pose, 3);
   EXPECT_EQ(bench.stored.size(), 2U);
   EXPECT_EQ(bench.dropped, 1);
+  const auto twice = bench.fsm.possible(daemon::run::Request::redo);
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error().message.find("asked for again already"), std::string::npos) << twice.error().text();
   hands.serve(bench);
   ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
   EXPECT_EQ(bench.stored.back().number, 3);
