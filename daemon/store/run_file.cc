@@ -102,6 +102,15 @@ Result<void> insert_pose(Database& db, const Pose& pose, std::size_t sensors) {
   return insert_reference(db, pose);
 }
 
+/// The error with the name of the file that was wanted, where it has that of the draft.
+Error named(Error error, const std::filesystem::path& draft, const std::filesystem::path& wanted) {
+  const std::string inside = draft.string(), told = wanted.string();
+  for (std::size_t at = error.message.find(inside); at != std::string::npos;
+       at = error.message.find(inside, at + told.size()))
+    error.message.replace(at, inside.size(), told);
+  return error;
+}
+
 }  // namespace
 
 RunFile::RunFile(std::filesystem::path path, std::unique_ptr<Database> db, RunHeader header)
@@ -125,7 +134,7 @@ Result<RunFile> RunFile::create(const std::filesystem::path& path, const RunHead
     std::error_code ignored;
     for (const char* suffix : {"", "-wal", "-shm", "-journal"})
       std::filesystem::remove(draft.string() + suffix, ignored);
-    return tl::unexpected(made.error());
+    return tl::unexpected(named(made.error(), draft, path));
   }
   return open(path, Access::resume);
 }
@@ -133,6 +142,8 @@ Result<RunFile> RunFile::create(const std::filesystem::path& path, const RunHead
 Result<RunFile> RunFile::open(const std::filesystem::path& path, Access access) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
+    if (std::filesystem::is_directory(path, ignored))
+      return fail(ErrorCode::bad_input, fmt::format("{} is a directory", path.string()), "name a file in it");
     return fail(ErrorCode::bad_input, fmt::format("there is no file {}", path.string()), "check the path");
   }
   auto db = access == Access::resume ? Database::open(path, Database::Mode::read_write)
@@ -287,6 +298,7 @@ Result<void> import_poses(const PoseTable& table, const std::filesystem::path& p
   std::error_code ignored;
   if (!made) {
     for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(draft.string() + suffix, ignored);
+    return tl::unexpected(named(made.error(), draft, path));
   }
   return made;
 }

@@ -279,6 +279,22 @@ TEST(RunFile, ImportIsAllOrNothing) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1);
 }
 
+/// What the operator called the file, not what it is called until it is whole.
+TEST(RunFile, ARefusedImportNamesTheFileThatWasWanted) {
+  TempDir dir;
+  const auto refused = import_poses({{full_pose(1)}, "poses.csv"}, dir / "none/x.mgtrun", {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "cannot create " + (dir / "none/x.mgtrun").string() + ": No such file or directory");
+}
+
+TEST(RunFile, ADirectoryIsNamedAsOne) {
+  TempDir dir;
+  const auto refused = RunFile::open(dir.path(), Access::read_only);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, dir.path().string() + " is a directory");
+}
+
 TEST(RunFile, AnImportKeepsTheWayOfTheTable) {
   TempDir dir;
   const PoseTable table{
