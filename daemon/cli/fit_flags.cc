@@ -53,7 +53,7 @@ void add_site_flags(CLI::App* command, FitFlags& f) {
   command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg")
       ->check(in_range(-360, 360, "deg"));
   add_table_flag(command, f);
-  command->add_option("--seed", f.seed, "of everything random");
+  command->add_option("--seed", f.seed, "of everything random")->check(seed_number());
 }
 
 constexpr double kTurn = 6.4;  ///< in radians, rounded up

@@ -25,6 +25,15 @@ CLI::Validator in_range(double low, double high, const std::string& unit) {
                [low, high](double x) { return x >= low && x <= high; });
 }
 
+CLI::Validator seed_number() {
+  return {[](std::string& given) -> std::string {
+            const bool digits = !given.empty() && given.find_first_not_of("0123456789") == std::string::npos;
+            return digits ? ""
+                          : fmt::format("{} is not possible: it must be a whole number from 0 on", given);
+          },
+          "a whole number from 0 on", "seed"};
+}
+
 CLI::Validator above_zero(double high, const std::string& unit) {
   return range(fmt::format("above 0 and up to {} {}", high, unit),
                [high](double x) { return x > 0 && x <= high; });

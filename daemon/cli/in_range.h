@@ -10,6 +10,9 @@ namespace mgtd::daemon::cli {
 /// From `low` to `high`, both included.
 [[nodiscard]] CLI::Validator in_range(double low, double high, const std::string& unit);
 
+/// A whole number of 64 bits, from 0.
+[[nodiscard]] CLI::Validator seed_number();
+
 /// Above zero, up to `high`.
 [[nodiscard]] CLI::Validator above_zero(double high, const std::string& unit);
 

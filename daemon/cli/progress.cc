@@ -14,6 +14,11 @@ int terminal_width(int fd) {
   return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+int terminal_rows(int fd) {
+  winsize size{};
+  return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : 24;
+}
+
 std::string duration_text(double seconds) {
   const auto total = std::llround(std::max(0.0, seconds));
   if (total < 60) return fmt::format("{} s", total);

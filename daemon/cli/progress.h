@@ -16,5 +16,7 @@ namespace mgtd::daemon::cli {
 
 /// Columns of the terminal behind a descriptor; 80 where it does not say.
 [[nodiscard]] int terminal_width(int fd);
+/// Its rows; 24 where it does not say.
+[[nodiscard]] int terminal_rows(int fd);
 
 }  // namespace mgtd::daemon::cli

@@ -12,6 +12,7 @@
 #include "calib/poses/pose_list.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/course_text.h"
+#include "daemon/cli/in_range.h"
 #include "daemon/cli/input_lines.h"
 #include "daemon/cli/interrupt.h"
 #include "daemon/cli/progress.h"
@@ -244,7 +245,7 @@ void add_plan_options(CLI::App* command, RunArguments& args) {
   command->add_option("--dwell-short", r.dwell_short_s, "seconds");
   command->add_option("--dwell-long", r.dwell_long_s, "seconds");
   command->add_option("--retries", r.retries, "how often a bad pose is measured again before the run pauses");
-  command->add_option("--seed", r.seed, "of the random set");
+  command->add_option("--seed", r.seed, "of the random set")->check(seed_number());
 }
 
 }  // namespace

@@ -99,7 +99,9 @@ int run_serve(const Session& session, const ServeArguments& args) {
                .limits = {.at_once = kAtOnce},
                .bounds = {.memory_bytes = serve::console::memory_bytes() / 2 / kAtOnce}}},
       std::move(source));
-  if (auto started = server.start(); !started) return report(session, started.error());
+  if (auto started = server.start(); !started)
+    return report(session, {started.error().code, started.error().message,
+                            "choose another port with --port; 0 takes a free one"});
   const std::string url = server.address() + "#token=" + server.token().text();
   if (session.json) {
     print_json({{"address", server.address()}, {"token", server.token().text()}, {"url", url}});

@@ -150,7 +150,8 @@ class PanelScreen {
   void take(const Session& session, const nlohmann::json& object) {
     panel_.take(object);
     const TextLook look = stdout_look(session);
-    const std::string text = shown(panel_.text(terminal_width(STDOUT_FILENO)), look);
+    const std::string text = top_of(shown(panel_.text(terminal_width(STDOUT_FILENO)), look),
+                                    static_cast<std::size_t>(terminal_rows(STDOUT_FILENO)));
     fmt::print("{}{}", back_over(drawn_), text);
     flush_standard_output();
     drawn_ = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

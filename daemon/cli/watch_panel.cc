@@ -143,6 +143,14 @@ std::string WatchPanel::text(int width) const {
   return out;
 }
 
+std::string top_of(const std::string& text, std::size_t rows) {
+  const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  if (rows < 3 || lines < rows) return text;
+  std::size_t end = 0;
+  for (std::size_t line = 0; line + 2 < rows; ++line) end = text.find('\n', end) + 1;
+  return text.substr(0, end) + fmt::format("... {} lines more\n", lines - (rows - 2));
+}
+
 std::string back_over(std::size_t lines) {
   return lines == 0 ? std::string("\x1b[J") : fmt::format("\r\x1b[{}A\x1b[J", lines);
 }

@@ -25,6 +25,10 @@ class WatchPanel {
   std::string last_gap_;            ///< why the last epochs are missing
 };
 
+/// The first lines of the text, as many as a terminal of so many rows holds above its cursor: over what has
+/// scrolled away the cursor does not come back. Where lines are left out, the last one says so.
+[[nodiscard]] std::string top_of(const std::string& text, std::size_t rows);
+
 /// What moves the cursor of a terminal back to the first of `lines` lines and removes them. The lines that
 /// are printed then stand in their place.
 [[nodiscard]] std::string back_over(std::size_t lines);

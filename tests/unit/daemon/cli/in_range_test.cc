@@ -24,6 +24,13 @@ TEST(InRange, AboveZeroLeavesZeroOut) {
   EXPECT_NE(complaint(sd, "10.01"), "");
 }
 
+/// The library takes -1 for the largest number that there is.
+TEST(InRange, ASeedIsAWholeNumberFromZero) {
+  for (const char* given : {"0", "7", "18446744073709551615"})
+    EXPECT_EQ(complaint(seed_number(), given), "") << given;
+  for (const char* given : {"-1", "1.5", "", "+-1"}) EXPECT_NE(complaint(seed_number(), given), "") << given;
+}
+
 TEST(InRange, WhatIsNoNumberIsInNoRange) {
   for (const char* given : {"nan", "inf", "-inf", "", "0.4m", "1e999"})
     EXPECT_NE(complaint(in_range(0.05, 1e300, "m"), given), "") << given;

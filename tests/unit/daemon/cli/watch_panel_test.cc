@@ -87,6 +87,14 @@ TEST(WatchPanel, ASuspectCalibrationSaysWhatWasMeasuredAndWhatToDo) {
                         "          calibrate\n"));
 }
 
+/// A panel as high as the terminal scrolls, and the cursor comes back to the wrong line.
+TEST(WatchPanel, NoMoreIsDrawnThanTheTerminalHolds) {
+  const std::string panel = "a\nb\nc\nd\ne\n";
+  EXPECT_EQ(top_of(panel, 6), panel);
+  EXPECT_EQ(top_of(panel, 5), "a\nb\nc\n... 2 lines more\n");
+  EXPECT_EQ(top_of(panel, 3), "a\n... 4 lines more\n");
+}
+
 TEST(WatchPanel, TheCursorGoesBackOverWhatWasDrawn) {
   EXPECT_EQ(back_over(0), "\x1b[J");
   EXPECT_EQ(back_over(9), "\r\x1b[9A\x1b[J");
