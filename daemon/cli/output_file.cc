@@ -2,6 +2,7 @@
 #include "daemon/cli/output_file.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "daemon/store/pose_source.h"
+#include "proto/standard_output.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -30,6 +32,23 @@ bool stays(const std::string& path) {
   std::error_code ignored;
   const auto own = std::filesystem::symlink_status(path, ignored);
   return std::filesystem::exists(own) && !std::filesystem::is_regular_file(own);
+}
+
+/// Whether the path leads where standard output goes: `-o /dev/stdout`, or a file that it is redirected to. A
+/// device holds nothing (/dev/null), and only a terminal shows it.
+bool is_standard_output(const std::string& path) {
+  struct stat named {
+  }, printed{};
+  if (::stat(path.c_str(), &named) != 0 || ::fstat(STDOUT_FILENO, &printed) != 0) return false;
+  return named.st_dev == printed.st_dev && named.st_ino == printed.st_ino &&
+         (!S_ISCHR(printed.st_mode) || ::isatty(STDOUT_FILENO) != 0);
+}
+
+/// Nothing else may stand in the file: standard output is standard error afterwards.
+void print_as_file(const std::string& content) {
+  fmt::print("{}", content);
+  flush_standard_output();
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
 }  // namespace
@@ -77,6 +96,11 @@ Error OutputFile::cannot_write(int os_error) const {
 
 Result<void> OutputFile::write(const std::string& content, const std::string& what) const {
   if (!wanted()) return {};
+  if (is_standard_output(path_)) {
+    print_as_file(content);
+    tell_written(what, path_);
+    return {};
+  }
   const std::string written = stays(path_) ? path_ : fmt::format("{}.{}.tmp", path_, getpid());
   auto failed = put(written, content);
   if (written != path_) {

@@ -22,8 +22,9 @@ class OutputFile {
   [[nodiscard]] const std::string& path() const { return path_; }
 
   /// Writes the whole file by way of a temporary one, so that a failure leaves the old file untouched. A
-  /// device, a FIFO or a symbolic link is written to directly and stays what it is. Does nothing where
-  /// nothing is wanted. Says on stderr that `what` is written, as tell_written() does.
+  /// device, a FIFO or a symbolic link is written to directly and stays what it is. Where the file is
+  /// standard output, what is printed from then on goes to standard error instead. Does nothing where nothing
+  /// is wanted. Says on stderr that `what` is written, as tell_written() does.
   [[nodiscard]] Result<void> write(const std::string& content, const std::string& what) const;
 
  private:

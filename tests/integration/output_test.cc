@@ -110,6 +110,24 @@ TEST_F(Outputs, WhatIsSaidOfAFileIsNotInIt) {
   EXPECT_THAT(applied.err, HasSubstr("157 rows written to "));
 }
 
+/// Also where a command has something to print beside the file.
+TEST_F(Outputs, StandardOutputAsAFileHoldsNothingElse) {
+  const std::string result = whole_file(calibration());
+  const Finished piped = mgt({"fit", poses(), "-o", "/dev/stdout"});
+  EXPECT_EQ(piped.exit_code, 0);
+  EXPECT_EQ(piped.out, result);
+  EXPECT_THAT(piped.err, HasSubstr("accepted by its checks"));
+  EXPECT_EQ(shell("\"$0\" fit \"$2\" --json -o /dev/stdout > one.json").exit_code, 0);
+  EXPECT_EQ(whole_file(dir_ / "one.json"), result);
+  EXPECT_EQ(shell("\"$0\" fit \"$2\" -o both.json > both.json").exit_code, 0);
+  EXPECT_EQ(whole_file(dir_ / "both.json"), result);
+  std::ofstream(dir_ / "more.csv") << "# a line before\n";
+  EXPECT_EQ(shell("\"$0\" export run.mgtrun -o /dev/stdout >> more.csv").exit_code, 0);
+  EXPECT_EQ(whole_file(dir_ / "more.csv"), "# a line before\n" + mgt({"export", run()}).out);
+  const Finished nowhere = shell("\"$0\" fit \"$2\" -o /dev/null > /dev/null");
+  EXPECT_THAT(nowhere.err, Not(HasSubstr("accepted by its checks")));
+}
+
 /// Whoever searches a file for words finds them in one line.
 TEST_F(Outputs, LinesStayWholeInAPipe) {
   const std::string found = mgt({"discover", poses(), "--quick"}).out;

@@ -148,5 +148,12 @@ TEST_F(ServedRuns, WhatIsNoRunIsRefused) {
   EXPECT_THAT(none.err, HasSubstr("no run and no folder"));
 }
 
+TEST_F(ServedRuns, AnOccupiedPortIsRefusedWithTheOptionForAnother) {
+  const Finished second = run({"mgt", "serve", dir_.path(), "--port", host_.substr(host_.rfind(':') + 1)});
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr("is occupied by another program"));
+  EXPECT_THAT(second.err, HasSubstr("choose another port with --port"));
+}
+
 }  // namespace
 }  // namespace mgtd::testing
