@@ -14,7 +14,7 @@ class Failed(Exception):
 
 def mgt(programs, *words):
     done = subprocess.run([programs / "mgt", *map(str, words)], capture_output=True, text=True)
-    if done.returncode not in (0, 1) or not done.stdout:
+    if done.returncode not in (0, 1) or (done.returncode == 1 and not done.stdout):
         raise Failed(f"mgt {' '.join(map(str, words))}: exit {done.returncode}: {done.stderr.strip()}")
     return done.stdout
 
