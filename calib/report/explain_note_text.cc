@@ -18,7 +18,7 @@ namespace mgtd::calib::report {
 namespace {
 
 std::string text(const criticism::search::SensorsMirrored& n) {
-  return fit::checks::mirrored_text(n.sensors);
+  return fit::checks::mirrored_text(n.sensors, n.of);
 }
 
 std::string text(const criticism::search::TableAnglesContradict& n) {

@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "calib/calibration/scale_gauge.h"
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/checks/identifiability_text.h"
+#include "calib/fit/checks/mirrored_text.h"
 #include "calib/fit/joint/joint_findings.h"
 #include "calib/fit/joint/table_ceiling.h"
 #include "calib/report/outlier_text.h"
@@ -24,10 +24,15 @@ namespace {
 
 std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < report.calibration.sensors.size(); ++i) {
-    const sensor::SensorModel& s = report.calibration.sensors[i];
+  const PerSensor<sensor::SensorModel>& sensors = report.calibration.sensors;
+  const auto is_mirrored = [](const sensor::SensorModel& s) { return s.mounting.determinant() < 0; };
+  const auto count = static_cast<std::size_t>(std::count_if(sensors.begin(), sensors.end(), is_mirrored));
+  const std::string_view mirrored = fit::checks::handedness_is_open(count, sensors.size())
+                                        ? "mirrored against the other half of the array"
+                                        : "mirrored (an axis wired backwards, or two swapped)";
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const sensor::SensorModel& s = sensors[i];
     if (s.mounting.isIdentity()) continue;
-    const bool mirrored = s.mounting.determinant() < 0;
     std::string axes;
     for (int p = 0; p < 3; ++p) {
       int a = 0;
@@ -36,9 +41,8 @@ std::vector<std::string> remarks_on_any(const fit::FitReport& report) {
                           s.mounting(p, a) < 0 ? std::string("-") + "xyz"[a] : std::string(1, "xyz"[a]),
                           "XYZ"[p]);
     }
-    out.push_back(fmt::format(
-        "sensor s{} is {}: its {}", i + 1,
-        mirrored ? "mirrored (an axis wired backwards, or two swapped)" : "mounted turned", axes));
+    out.push_back(
+        fmt::format("sensor s{} is {}: its {}", i + 1, is_mirrored(s) ? mirrored : "mounted turned", axes));
   }
   if (std::string left = lack_of_fit_text(report); !left.empty()) out.push_back(std::move(left));
   constexpr std::size_t kMostLines = 40;  // a recording can have hundreds

@@ -118,7 +118,7 @@ std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double 
   std::vector<std::size_t> mirrored;
   for (std::size_t i = 0; i < fit.state.sensors.size(); ++i)
     if (fit.state.sensors[i].mounting.determinant() < 0) mirrored.push_back(i + 1);
-  if (!mirrored.empty()) return SensorsMirrored{std::move(mirrored)};
+  if (!mirrored.empty()) return SensorsMirrored{fit.state.sensors.size(), std::move(mirrored)};
   const double limit = fit::checks::table_limit_rad(table_sd_rad);
   if (fit.table_sd_rad > limit) return TableAnglesContradict{fit.table_sd_rad, limit};
   return std::nullopt;

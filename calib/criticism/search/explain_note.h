@@ -14,6 +14,7 @@ namespace mgtd::calib::criticism::search {
 
 // Of the data:
 struct SensorsMirrored {
+  std::size_t of;                    ///< sensors in the array
   std::vector<std::size_t> sensors;  ///< by number, from 1
 };
 struct TableAnglesContradict {

@@ -55,17 +55,13 @@ Check mounting_check(const FitReport& r) {
     if (angle > worst) worst = angle, which = i;
     if (s.mounting.determinant() < 0) mirrored.push_back(i + 1);
   }
-  const bool tie = 2 * mirrored.size() == r.calibration.sensors.size();
-  return {
-      "mounting", worst <= kMaxTurn_rad && mirrored.empty(),
-      tie ? fmt::format("two sensors are mirror images of the other two: which are right-handed cannot be "
-                        "told from the field")
-      : !mirrored.empty() ? mirrored_text(mirrored)
-                          : fmt::format("s{} stands {:.1f} deg from the nearest whole quarter turns",
-                                        which + 1, to_deg(worst)),
-      fmt::format("{:.0f} deg, and no mirrored sensor", to_deg(kMaxTurn_rad)),
-      !mirrored.empty() ? "check the wiring of each sensor with a magnet, mend it and measure again"
-                        : "mount the sensor square to the platform, or check that it sat still"};
+  return {"mounting", worst <= kMaxTurn_rad && mirrored.empty(),
+          !mirrored.empty() ? mirrored_text(mirrored, r.calibration.sensors.size())
+                            : fmt::format("s{} stands {:.1f} deg from the nearest whole quarter turns",
+                                          which + 1, to_deg(worst)),
+          fmt::format("{:.0f} deg, and no mirrored sensor", to_deg(kMaxTurn_rad)),
+          !mirrored.empty() ? "check the wiring of each sensor with a magnet, mend it and measure again"
+                            : "mount the sensor square to the platform, or check that it sat still"};
 }
 
 Check table_check(const FitReport& r, const FitOptions& options) {

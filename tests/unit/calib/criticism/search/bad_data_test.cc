@@ -37,6 +37,11 @@ std::vector<Row> rows() {
          for (Pose& pose : run.poses) pose.y_nT[3][2] *= -1;
        },
        {"sensor 4 is mirrored", "two leads are swapped or one is inverted"}},
+      {"two_leads_inverted",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) pose.y_nT[0][1] *= -1, pose.y_nT[3][2] *= -1;
+       },
+       {"mirrored against the other half of the array", "cannot be told from the field"}},
       {"azimuth_counted_backwards",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) *pose.azimuth_rad *= -1;
