@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/filled_in_error.h"
 #include "calib/fit/joint/reference_turn.h"
 #include "calib/fit/joint/robust_fit.h"
 #include "calib/fit/joint/sample_correlation.h"
@@ -59,20 +60,6 @@ Eigen::MatrixXd widened_information(const JointFit& fit) {
     pose.reference_weight *= fit.noise_inflation / fit.birge_ratio;
   }
   return reduce(wide, fit.state, 0).S;
-}
-
-/// The common error D of the total fields that were filled in moves the solution by S^-1 dg/dD.
-void add_site_difference(const JointFit& fit, const Reduced& reduced, Eigen::MatrixXd& covariance) {
-  const auto filled_in = [](const JointPose& pose) { return pose.by_site_difference; };
-  if (std::none_of(fit.problem.poses.begin(), fit.problem.poses.end(), filled_in)) return;
-  const auto information = linear::Cholesky::of(reduced.S);
-  if (!information) return;
-  JointProblem shifted = fit.problem;
-  for (JointPose& pose : shifted.poses)
-    if (pose.by_site_difference) pose.f_nT += fit.problem.site_difference_sd_nT;
-  const Eigen::VectorXd pull = reduce(shifted, fit.state, 0).g - reduced.g;
-  const Eigen::VectorXd moved = information->solve(pull);
-  covariance += moved * moved.transpose();
 }
 
 /// Of the mean alpha, beta and gamma of all sensors.
@@ -131,12 +118,9 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   fill_statistics(found->residuals, reduced, fit);
   auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : reduced.S);
   if (!covariance) return tl::unexpected(covariance.error());
-  add_site_difference(fit, reduced, *covariance);
-  fit.covariance = *std::move(covariance);
-  if (is_recording(fit.problem)) {
+  if (is_recording(fit.problem))
     fit.samples_per_effective = sample_correlation(fit.problem, fit.state).samples_per_effective();
-    fit.covariance *= fit.samples_per_effective;
-  }
+  fit.covariance = fit.samples_per_effective * *covariance + filled_in_error(fit, reduced);
   fit.common_rotation_sd_rad = common_rotation_sd(fit.problem.sensors(), fit.covariance);
   return fit;
 }

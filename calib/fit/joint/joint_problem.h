@@ -66,9 +66,10 @@ struct JointPose {
   double f_nT{0}, f_weight{0};  ///< scalar reference of this pose; with `common_field` its spread about F
   /// The field as a known vector: in frame P, or, of a reference beside the table, in its own axes.
   Eigen::Vector3d reference_nT{Eigen::Vector3d::Zero()};
-  double reference_weight{0};      ///< 1/nT, of each component, or of the size alone; 0: not known
-  double reference_sd_rad{0};      ///< of the direction that a reference beside the table shows
-  bool by_site_difference{false};  ///< f_nT is filled in from the size of the vector (site_difference.h)
+  double reference_weight{0};  ///< 1/nT, of each component, or of the size alone; 0: not known
+  double reference_sd_rad{0};  ///< of the direction that a reference beside the table shows
+  /// f_nT is no reading of this pose: from the size of the vector (site_difference.h), or the field as known.
+  bool filled_in{false};
   bool has_angles{false};
   Eigen::Matrix3d T{Eigen::Matrix3d::Identity()};  ///< table rotation at the recorded angles
   double attitude_weight{0};                       ///< 1/rad, of each component of w_k: weigh_attitude()
@@ -101,7 +102,7 @@ struct JointProblem {
   bool common_field{false};         ///< no scalar reference: F_k is F within 1/f_weight
   bool has_angles{false};           ///< at least one pose has table angles
   bool has_reference{false};        ///< of every pose the field is known as a vector
-  double site_difference_sd_nT{0};  ///< common to all poses `by_site_difference`
+  double filled_in_sd_nT{0};        ///< of the error that is common to all poses `filled_in`
   std::vector<LinearPrior> priors;  ///< gauge, coefficients, known field
   /// Of the site's field, from the operator; and the weight of both, 1/rad.
   std::optional<double> known_inclination_rad, known_declination_rad;

@@ -41,7 +41,7 @@ void set_reference(const Pose& pose, const SiteDifference& difference, JointPose
   out.reference_sd_rad = sd_nT / pose.ref_nT->norm();
   if (pose.f_nT) return;  // two places, two sizes: that of the array counts
   if (difference.known()) {
-    out.by_site_difference = true;
+    out.filled_in = true;
     out.f_weight = 1 / std::max(total.sd_nT, kMinFieldSd_nT);
   } else {
     out.reference_weight = 1 / sd_nT;
@@ -63,6 +63,7 @@ JointPose joint_pose(const Pose& pose, const JointOptions& options, bool common_
     const double sd = pose.f_nT ? scalar_sd_nT(pose) : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
     out.f_nT = pose.f_nT ? *pose.f_nT : *options.field_nT;
     out.f_weight = 1 / std::max(sd, kMinFieldSd_nT);
+    out.filled_in = !pose.f_nT;
   }
   if (const auto angles = pose.angles()) {
     out.has_angles = true;
@@ -192,7 +193,8 @@ Result<JointProblem> joint_problem(const PoseTable& table, const JointOptions& o
   problem.common_field = with_f == 0 && !problem.has_reference;
   problem.means = std::make_shared<const effects::CovariateMeans>(effects::covariate_means(table));
   const SiteDifference difference = site_difference(table);
-  problem.site_difference_sd_nT = difference.sd_nT;
+  problem.filled_in_sd_nT =
+      problem.has_reference ? difference.sd_nT : options.field_sd_nT.value_or(kCommonFieldSpread_nT);
   const poses::RunTime time = poses::RunTime::of(table);
   const Pose* previous = nullptr;
   problem.poses.reserve(static_cast<std::size_t>(total));

@@ -46,6 +46,26 @@ TEST(JointFit, EstimatesTheTableAndTheNoise) {
       std::string::npos);
 }
 
+/// The total field that --field gives to poses without one of their own is wrong by one error for them all.
+TEST(JointFit, AKnownFieldIsOneObservationHoweverManyPosesTakeIt) {
+  PoseTable table = simulate(real_rig(), 36, 121, 3);
+  const double f_nT = *table.poses.front().f_nT;
+  for (std::size_t k = 0; k < table.poses.size(); ++k) {
+    if (k % 8 == 0) {
+      table.poses[k].f_sd_nT = 10;
+    } else {
+      table.poses[k].f_nT = table.poses[k].f_sd_nT = std::nullopt;
+    }
+  }
+  const JointFit fit = must_fit(table, {.field_nT = f_nT + 20, .field_sd_nT = 20});
+  const int slot = sensor::cx;
+  const double sd_nT = std::sqrt(fit.covariance(slot, slot)) * f_nT;
+  const double error_nT = (fit.state.sensors[0].scale[0] / real_rig().rig[0].scale[0] - 1) * f_nT;
+  EXPECT_GT(std::abs(error_nT), 5);
+  EXPECT_LT(std::abs(error_nT), 2 * sd_nT);
+  EXPECT_LT(sd_nT, 21);
+}
+
 TEST(JointFit, ThatIsToldToStopIsRefused) {
   std::stop_source stop;
   JointOptions options;

@@ -252,5 +252,34 @@ TEST(CovarianceWithWandering, IsHonest) {
   EXPECT_LT(offsets / n, 1.5);
 }
 
+/// What widens the covariance of a fit whose offsets stay widens this one too.
+TEST(CovarianceWithWandering, KeepsTheErrorOfFilledInFieldsAndTheCorrelationOfSamples) {
+  HiddenRun run{.noise_nT = 0.05};
+  run.hidden = wandering_offsets({.step_nT = kStep_nT}, 3);
+  const PoseTable table = hidden_run(run, 3);
+  const auto found = fit_joint(table, joint_options({}));
+  ASSERT_TRUE(found);
+  JointFit fit = *found;
+  const WanderingEstimate wandering = wandering_of(fit);
+  const Eigen::MatrixXd plain = covariance_with_wandering(fit, wandering).value();
+  fit.problem.filled_in_sd_nT = 5;
+  for (JointPose& pose : fit.problem.poses) pose.filled_in = true;
+  const Eigen::MatrixXd error = covariance_with_wandering(fit, wandering).value() - plain;
+  const double f_nT = fit.state.f_nT;
+  for (int i = 0; i < kSensors; ++i) {
+    const int slot = sensor::kSensorParameters * i + sensor::cx;
+    const double scale = fit.state.sensors[static_cast<std::size_t>(i)].scale[0];
+    EXPECT_NEAR(std::sqrt(error(slot, slot)), scale * 5 / f_nT, 0.05 * scale * 5 / f_nT);
+  }
+  for (JointPose& pose : fit.problem.poses) pose.filled_in = false;
+  fit.samples_per_effective = 4;
+  const Eigen::MatrixXd correlated = covariance_with_wandering(fit, wandering).value();
+  for (int i = 0; i < kSensors; ++i) {
+    const int slot = sensor::kSensorParameters * i + sensor::cx;
+    EXPECT_GT(correlated(slot, slot), 1.05 * plain(slot, slot));
+    EXPECT_LE(correlated(slot, slot), 4 * plain(slot, slot));
+  }
+}
+
 }  // namespace
 }  // namespace mgtd::calib::fit::joint
