@@ -78,6 +78,15 @@ TEST_F(Outputs, NoCommandWritesOverWhatItReads) {
   EXPECT_THAT(mgt({"fit", link, "-o", hard}).err, HasSubstr(hard + " and " + link));
 }
 
+TEST_F(Outputs, TheRigWritesOverNoListOfPoses) {
+  const std::string list = dir_ / "list.csv", text = "azimuth_deg,pitch_deg,roll_deg\n10,0,0\n";
+  std::ofstream(list) << text;
+  const Finished slip = run_program({program("mgt-rig"), "table", "--poses", list, "-o", list}, dir_.path());
+  EXPECT_EQ(slip.exit_code, 2);
+  EXPECT_THAT(slip.err, HasSubstr("would be overwritten"));
+  EXPECT_EQ(whole_file(list), text);
+}
+
 /// Also a run file that the command does not read holds a measurement.
 TEST_F(Outputs, NoCommandWritesOverARunFile) {
   const std::string other = dir_ / "other.mgtrun", called = dir_ / "called.json";

@@ -104,6 +104,20 @@ int write(const std::string& path, const std::string& content) {
   return 2;
 }
 
+/// Whether a file that is to be written is one that is read; it says so.
+bool overwrites_input(const Arguments& args) {
+  for (const std::string& to : {args.output, args.seal}) {
+    for (const std::string& from : {args.scenario, args.poses}) {
+      std::error_code not_there;
+      if (!std::filesystem::equivalent(to, from, not_there)) continue;
+      fmt::print(stderr, "mgt-rig: {} is read by this command and would be overwritten: name another file\n",
+                 to);
+      return true;
+    }
+  }
+  return false;
+}
+
 /// The answer, sealed before anything is measured.
 bool seal_truth(const std::string& path, const Scenario& s) {
   std::random_device device;
@@ -116,6 +130,7 @@ bool seal_truth(const std::string& path, const Scenario& s) {
 
 /// With what the command line wants hidden; sealed where it says so.
 std::optional<Scenario> prepared(const Arguments& args, Scenario s) {
+  if (overwrites_input(args)) return std::nullopt;
   if (args.hide > 0) {
     std::random_device device;
     std::mt19937_64 random((std::uint64_t{device()} << 32U) ^ device());
