@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <system_error>
 #include <tuple>
@@ -41,9 +42,10 @@ std::uint64_t next_number(const fs::path& directory, const std::string& stem, co
 
 std::vector<RotatedFile> by_age(std::vector<RotatedFile> files, const std::string& stem,
                                 fs::file_time_type now) {
+  constexpr std::chrono::hours kClockBehind{24};  // after a start without a clock that runs on
   const auto age = [&](const RotatedFile& file) {
     const bool own = file.path.filename().string().starts_with(stem + ".");
-    const bool wrong = !own && file.written > now;
+    const bool wrong = !own && file.written > now + kClockBehind;
     return std::tuple(own, !wrong, own ? fs::file_time_type() : file.written, file.path);
   };
   std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) { return age(a) < age(b); });

@@ -44,6 +44,15 @@ TEST(RotatedFiles, AClockThatWasWrongDoesNotMakeOldFilesNew) {
               ElementsAre("raw-1900.000001.raw", "raw-1900.000002.raw"));
 }
 
+/// A computer without a clock of its own starts with the time of its last shutdown or an earlier one.
+TEST(RotatedFiles, AClockThatIsAnHourBehindKeepsWhatWasJustMeasured) {
+  TempDir dir;
+  write(dir / "raw-1800.000000.raw", hours{48});
+  write(dir / "raw-1890.000000.raw", hours{-1});
+  const auto files = by_age(rotated_files(dir.path(), "raw-", ".raw"), "raw-1900", kNow);
+  EXPECT_THAT(names(files), ElementsAre("raw-1800.000000.raw", "raw-1890.000000.raw"));
+}
+
 TEST(RotatedFiles, AFileOfTheFutureKeepsNoneThatIsTooOld) {
   TempDir dir;
   write(dir / "raw-1800.000000.raw", hours{48});
