@@ -23,13 +23,15 @@ Result<void> enough_samples(const plan::RunPlan& plan, const RunConfig& config) 
                 fmt::format("make every dwell {:g} s or longer (--dwell-short, dwell_s), or raise rate_hz",
                             static_cast<double>(kFewestInDwell) / rate_hz));
   }
-  if (const double window_s = whole_window_s(config.settle); window_s >= config.settle.max_s) {
+  const double window_s = whole_window_s(config.settle);
+  const bool by_rate = window_s > config.settle.window_s;
+  if (by_rate && window_s >= config.settle.max_s) {
     return fail(
         ErrorCode::refused,
-        fmt::format("at {:g} Hz it takes {:.0f} s to see that the field is steady ({} samples), limit "
+        fmt::format("at {:g} Hz it takes {:.3g} s to see that the field is steady ({} samples), limit "
                     "settle_max_s = {:g} s",
                     rate_hz, window_s, kFewestInWindow, config.settle.max_s),
-        fmt::format("raise settle_max_s well above {:.0f} s, or rate_hz", window_s));
+        fmt::format("raise settle_max_s well above {:.3g} s, or rate_hz", window_s));
   }
   return {};
 }

@@ -131,11 +131,11 @@ void RunFsm::on(const PoseStored& stored) {
 void RunFsm::on(const PosesDropped& dropped) {
   if (dropped.result) return;
   disk_.undropped = dropped.numbers;
-  if (in<phase::Stopping>()) return;
+  if (in<phase::Stopping>() || in<phase::Ended>()) return;
   if (in<phase::Judging>() || in<phase::Solving>()) act(CancelSolve{});
   hold(
       fmt::format("{} to be measured again but could not be taken out of the run file: {}; mgt run resume "
-                  "tries again",
+                  "tries again, and so does the end of the run; a daemon that is restarted before keeps it",
                   dropped.numbers.size() == 1 ? fmt::format("pose {} is", dropped.numbers.front())
                                               : fmt::format("poses {} are", fmt::join(dropped.numbers, ", ")),
                   dropped.result.error().text()));
@@ -207,6 +207,7 @@ void RunFsm::enter(Phase phase, std::string message) {
 
 void RunFsm::finish(RunState state, const std::string& message, const std::string& proposed) {
   if (state != RunState::done) act(StopTable{});
+  if (!disk_.undropped.empty()) act(DropPoses{std::exchange(disk_.undropped, {})});
   flush_path();
   enter(phase::Ended{state, proposed}, message);
   publish();

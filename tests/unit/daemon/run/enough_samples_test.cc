@@ -31,6 +31,9 @@ TEST(EnoughSamples, ADwellHoldsAtLeastEight) {
 }
 
 TEST(EnoughSamples, TheFieldMayBeSeenToBeSteady) {
+  RunConfig quick = at_rate(50);
+  quick.settle.min_s = 0.5, quick.settle.max_s = quick.settle.window_s;
+  EXPECT_TRUE(enough_samples(two_dwells(5, 5), quick)) << "four fifths of the window suffice";
   EXPECT_TRUE(enough_samples(two_dwells(60, 60), at_rate(0.5)));
   const auto refused = enough_samples(two_dwells(60, 60), at_rate(0.2));
   ASSERT_FALSE(refused);

@@ -204,6 +204,22 @@ TEST(RunByHand, APoseThatTheDiskDoesNotDropPausesTheRun) {
   EXPECT_EQ(bench.stored.size(), 2U);
 }
 
+TEST(RunByHand, AnAbortDropsWhatAFullDiskKept) {
+  RunBench bench(hand_plan(12), hand_config());
+  Operator hands;
+  ASSERT_TRUE(to_prompt(bench));
+  hands.serve(bench);
+  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  bench.disk_full = true;
+  bench.send(daemon::run::Request::redo);
+  ASSERT_TRUE(bench.run_to(RunState::paused));
+  bench.disk_full = false;
+  bench.send(daemon::run::Request::abort);
+  ASSERT_TRUE(bench.run(600));
+  EXPECT_EQ(bench.finished->state, RunState::aborted);
+  EXPECT_TRUE(bench.stored.empty());
+}
+
 TEST(RunByHand, APoseThatTheDiskDropsLaterIsMeasuredAgain) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
