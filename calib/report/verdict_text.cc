@@ -283,6 +283,10 @@ std::string names_text(const criticism::search::ExplainReport& r) {
     std::vector<std::string>& among = round.possible.empty() ? sure : places;
     if (std::find(among.begin(), among.end(), place) == among.end()) among.push_back(std::move(place));
   }
+  std::erase_if(sure, [&](const std::string& name) {
+    return std::any_of(places.begin(), places.end(),
+                       [&](const std::string& place) { return place.starts_with(name + " or "); });
+  });
   if (!sure.empty()) places.insert(places.begin(), fmt::format("{}", fmt::join(sure, ", ")));
   return fmt::format("{}", fmt::join(places, "; "));
 }

@@ -89,10 +89,9 @@ std::vector<NextStep> steps_of(const PoseTable& table, const std::vector<design:
   return out;
 }
 
-bool is_open(const Round& round) {
-  const std::vector<tests::Alternative>& others = round.added.alternatives;
-  return std::any_of(others.begin(), others.end(),
-                     [](const tests::Alternative& alternative) { return alternative.possible; });
+tests::Alternative against(const tests::Candidate& alternative) {
+  return {
+      .effect = alternative.effect, .where = alternative.where, .spec = alternative.spec, .possible = true};
 }
 
 /// A winner in whose place something else could stand, and the effects beside which that was asked.
@@ -104,20 +103,30 @@ struct OpenQuestion {
 /// Of the first round that is open.
 std::optional<OpenQuestion> open_question(const ExplainReport& report,
                                           const std::vector<effects::EffectPtr>& given) {
-  const auto open = std::find_if(report.rounds.begin(), report.rounds.end(), is_open);
-  if (open == report.rounds.end()) return std::nullopt;
-  return OpenQuestion{open->added, open == report.rounds.begin() ? given : std::prev(open)->model};
+  const Round* const open = report.open_round();
+  if (open == nullptr) return std::nullopt;
+  OpenQuestion out{open->added, open == &report.rounds.front() ? given : std::prev(open)->model};
+  std::vector<tests::Alternative>& others = out.winner.alternatives;
+  std::erase_if(others, [&](const tests::Alternative& other) {
+    return other.possible &&
+           std::find(open->possible.begin(), open->possible.end(), other.effect) == open->possible.end();
+  });
+  for (const std::string& name : open->possible) {
+    const bool there = std::any_of(others.begin(), others.end(), [&](const tests::Alternative& other) {
+      return other.possible && other.effect == name;
+    });
+    const auto candidate = candidate_of(report, name);
+    if (!there && candidate) others.push_back(against(**candidate));
+  }
+  const bool any = std::any_of(others.begin(), others.end(),
+                               [](const tests::Alternative& other) { return other.possible; });
+  return any ? std::optional(std::move(out)) : std::nullopt;
 }
 
 NothingToSettle nothing_to_settle(const ExplainReport& report) {
   if (report.rounds.empty()) return {};
   const tests::Candidate& winner = report.rounds.front().added;
   return {winner.effect, winner.alternatives.empty() ? std::string() : winner.alternatives.front().effect};
-}
-
-tests::Alternative against(const tests::Candidate& alternative) {
-  return {
-      .effect = alternative.effect, .where = alternative.where, .spec = alternative.spec, .possible = true};
 }
 
 }  // namespace

@@ -56,6 +56,8 @@ TEST(NamesText, TellsWhichNameIsOpen) {
   report.rounds[1].added.effect = "site.gradient";
   report.rounds[2].added.effect = "axis.quadratic";
   EXPECT_EQ(names_text(report), "site.gradient, axis.quadratic; axis.cubic or axis.transverse");
+  report.rounds[1].added.effect = "axis.cubic";  // on another axis, and sure there
+  EXPECT_EQ(names_text(report), "axis.quadratic; axis.cubic or axis.transverse");
   report.finding = criticism::search::Finding::partial;
   report.named = {"axis.cubic", "site.gradient"};
   EXPECT_EQ(names_text(report), "axis.cubic, site.gradient");
