@@ -204,8 +204,10 @@ Result<void> Reader::refuse_missing() {
         fmt::format("missing column: {}{}", missing,
                     rows_ == Rows::measured && read == 0 ? ", and those of further sensors" : ""),
         column_of("s1_x_uT") == kNowhere
-            ? "add it to the header row (docs/pose-table.md lists every column), or say which column is "
-              "which: mgt import --columns MAP.toml (docs/import.md)"
+            ? fmt::format("add it to the header row (docs/pose-table.md lists every column){}",
+                          rows_ == Rows::measured ? ", or say which column is which: mgt import --columns "
+                                                    "MAP.toml (docs/import.md)"
+                                                  : "")
             : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
   }
   const auto there = std::count_if(kReference.begin(), kReference.end(),

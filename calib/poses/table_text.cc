@@ -22,12 +22,13 @@ std::vector<TableCell> cells_of(std::string_view line, char delimiter) {
     TableCell cell{.text = {}, .column = at + 1};
     bool quoted = false;
     for (; at < line.size() && (quoted || !parts(line[at])); ++at) {
-      if (line[at] != '"') {
-        cell.text += line[at];
-      } else if (quoted && at + 1 < line.size() && line[at + 1] == '"') {
+      const bool opens = !quoted && trimmed(cell.text).empty();  // later in a cell it is an inch sign
+      if (quoted && line.substr(at, 2) == "\"\"") {
         cell.text += line[at++];
-      } else {
+      } else if (line[at] == '"' && (quoted || opens)) {
         quoted = !quoted;
+      } else {
+        cell.text += line[at];
       }
     }
     cell.text = trimmed(cell.text);

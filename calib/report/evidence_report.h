@@ -9,8 +9,8 @@ namespace mgtd::calib::report {
 
 /// Writes the evidence for one effect as JSON (mgt.why/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::search::Evidence& evidence);
-/// For the terminal, 80 columns wide: how far beyond chance, the poses that carry it, without and with the
-/// effect map by map, what else it could be and what would tell.
+/// For a person, in whole lines that the caller fits to the terminal: how far beyond chance, the poses that
+/// carry it, without and with the effect map by map, what else it could be and what would tell.
 [[nodiscard]] std::string to_text(const criticism::search::Evidence& evidence);
 
 }  // namespace mgtd::calib::report

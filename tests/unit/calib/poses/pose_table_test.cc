@@ -50,6 +50,9 @@ TEST(PoseTable, ReadsCellsInQuotes) {
   const auto named = parse_pose_table(small(",\"I, \"\"motor\"\"\"", ",4"), "poses.csv");
   ASSERT_TRUE(named) << named.error().text();
   EXPECT_EQ(named->poses.front().covariates.at("I, \"motor\""), 4);
+  const auto inch = parse_pose_table(small(",5\" cross", ",4"), "poses.csv");
+  ASSERT_TRUE(inch) << inch.error().text();
+  EXPECT_EQ(inch->poses.front().covariates.at("5\" cross"), 4);
   const auto again = parse_pose_table(format_pose_table(*named), "poses.csv");
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(again->poses.front().covariates, named->poses.front().covariates);
