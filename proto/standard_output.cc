@@ -35,7 +35,10 @@ int with_standard_output(std::string_view name, int failed, const std::function<
   } catch (const std::system_error& error) {
     if (std::ferror(stderr) != 0) return failed;  // there is nobody to tell
     if (std::ferror(stdout) == 0) throw;
-    fmt::print(stderr, "{}: cannot write to standard output: {}\n", name, error.code().message());
+    // Standard error may be full as well, and would throw once more.
+    (void)std::fputs(
+        fmt::format("{}: cannot write to standard output: {}\n", name, error.code().message()).c_str(),
+        stderr);
     return failed;
   }
 }

@@ -27,8 +27,9 @@ void catch_interrupts(std::initializer_list<int> signals) {
   struct sigaction action {};
   action.sa_handler = [](int) { came = 1; };
   sigemptyset(&action.sa_mask);
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int signal : signals) {
+    // A terminal that is closed sends its signal twice.
+    action.sa_flags = signal == SIGINT ? static_cast<int>(SA_RESETHAND) : 0;
     sigaddset(&caught(), signal);
     ::sigaction(signal, &action, nullptr);
   }

@@ -34,23 +34,6 @@ bool stays(const std::string& path) {
   return std::filesystem::exists(own) && !std::filesystem::is_regular_file(own);
 }
 
-/// Whether the path leads where standard output goes: `-o /dev/stdout`, or a file that it is redirected to. A
-/// device holds nothing (/dev/null), and only a terminal shows it.
-bool is_standard_output(const std::string& path) {
-  struct stat named {
-  }, printed{};
-  if (::stat(path.c_str(), &named) != 0 || ::fstat(STDOUT_FILENO, &printed) != 0) return false;
-  return named.st_dev == printed.st_dev && named.st_ino == printed.st_ino &&
-         (!S_ISCHR(printed.st_mode) || ::isatty(STDOUT_FILENO) != 0);
-}
-
-/// Nothing else may stand in the file: standard output is standard error afterwards.
-void print_as_file(const std::string& content) {
-  fmt::print("{}", content);
-  flush_standard_output();
-  ::dup2(STDERR_FILENO, STDOUT_FILENO);
-}
-
 }  // namespace
 
 Result<OutputFile> OutputFile::at(std::string path, const std::vector<std::string>& inputs,
@@ -60,6 +43,15 @@ Result<OutputFile> OutputFile::at(std::string path, const std::vector<std::strin
   if (auto apart = out.refuse_input(inputs); !apart) return tl::unexpected(apart.error());
   if (auto apart = out.refuse_run_file(); !apart) return tl::unexpected(apart.error());
   return out;
+}
+
+/// A device holds nothing (/dev/null), and only a terminal shows it.
+bool OutputFile::is_standard_output() const {
+  struct stat named {
+  }, printed{};
+  if (::stat(path_.c_str(), &named) != 0 || ::fstat(STDOUT_FILENO, &printed) != 0) return false;
+  return named.st_dev == printed.st_dev && named.st_ino == printed.st_ino &&
+         (!S_ISCHR(printed.st_mode) || ::isatty(STDOUT_FILENO) != 0);
 }
 
 Result<void> OutputFile::refuse_input(const std::vector<std::string>& inputs) const {
@@ -96,8 +88,9 @@ Error OutputFile::cannot_write(int os_error) const {
 
 Result<void> OutputFile::write(const std::string& content, const std::string& what) const {
   if (!wanted()) return {};
-  if (is_standard_output(path_)) {
-    print_as_file(content);
+  if (is_standard_output()) {
+    fmt::print("{}", content);
+    end_standard_output();
     tell_written(what, path_);
     return {};
   }
@@ -110,6 +103,11 @@ Result<void> OutputFile::write(const std::string& content, const std::string& wh
   if (failed) return tl::unexpected(cannot_write(*failed));
   tell_written(what, path_);
   return {};
+}
+
+void end_standard_output() {
+  flush_standard_output();
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
 void tell_written(const std::string& what, const std::string& path) {

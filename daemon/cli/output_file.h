@@ -20,6 +20,8 @@ class OutputFile {
 
   [[nodiscard]] bool wanted() const { return !path_.empty(); }
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// Whether the path leads where standard output goes: `-o /dev/stdout`, or a file that it is redirected to.
+  [[nodiscard]] bool is_standard_output() const;
 
   /// Writes the whole file by way of a temporary one, so that a failure leaves the old file untouched. A
   /// device, a FIFO or a symbolic link is written to directly and stays what it is. Where the file is
@@ -35,6 +37,9 @@ class OutputFile {
 
   std::string path_, option_;
 };
+
+/// Ends what stands in standard output as a file: what is printed from then on goes to standard error.
+void end_standard_output();
 
 /// "`what` written to `path`", on stderr: standard output may be that file.
 void tell_written(const std::string& what, const std::string& path);

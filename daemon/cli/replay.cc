@@ -139,8 +139,9 @@ int run_replay(const Session& session, const ReplayArguments& args) {
     instead = std::make_shared<const calib::calibration::Calibration>(*std::move(calibration));
   }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
-  ReplayOutput output{session.json ? nullptr : stdout};
-  if (!args.output.empty()) {
+  const bool printed = place->wanted() && place->is_standard_output();
+  ReplayOutput output{session.json && !printed ? nullptr : stdout};
+  if (place->wanted() && !printed) {
     file.reset(std::fopen(args.output.c_str(), "we"));
     if (file == nullptr)
       return report(session,
@@ -159,6 +160,8 @@ int run_replay(const Session& session, const ReplayArguments& args) {
   }
   if (file && (std::fflush(file.get()) != 0 || output.failed > 0))
     return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
+  if (printed) end_standard_output();
+  if (place->wanted()) tell_written("stream", args.output);
   if (session.json) print_json(summary(replay.counts(), journals->left_out, damaged));
   if (!session.json) print_summary(replay.counts(), damaged);
   return replay.counts().parted || damaged > 0 ? 1 : 0;

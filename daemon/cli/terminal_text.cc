@@ -107,7 +107,8 @@ TextLook look_of(const Output& output, std::string_view color) {
 
 std::string fitted(std::string_view text, std::size_t width) {
   return by_lines(text, [width](std::string_view line) {
-    return calib::report::seen_width(line) > width ? broken(line, width) : std::string(line);
+    const bool fits = calib::report::seen_width(line) <= width || line.starts_with("  mgt ");
+    return fits ? std::string(line) : broken(line, width);
   });
 }
 

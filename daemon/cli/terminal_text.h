@@ -25,8 +25,9 @@ struct Output {
 /// `color` is "always", "never", or "auto": on a terminal, unless NO_COLOR is set or TERM is "dumb".
 [[nodiscard]] TextLook look_of(const Output& output, std::string_view color);
 
-/// Breaks lines that are longer than `width` at blanks. What is broken off stands below the last column of
-/// its line (after two blanks or more), else below its beginning. A word that is too long stays whole.
+/// Breaks lines that are longer than `width` at blanks, but for commands to copy ("  mgt ..."). What is
+/// broken off stands below the last column of its line (after two blanks or more), else below its beginning.
+/// A word that is too long stays whole.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t width);
 
 /// Colours judgements where the reports have them: green what is well, yellow what is open, red what fails.

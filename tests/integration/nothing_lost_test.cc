@@ -15,6 +15,7 @@
 
 #include "tests/integration/bench.h"
 #include "tests/support/line_peer.h"
+#include "tests/support/whole_file.h"
 
 namespace mgtd::testing {
 namespace {
@@ -118,6 +119,9 @@ TEST(NothingLost, OverAKillTheStreamIsWholeAndItsJournalMakesItAgain) {
   EXPECT_EQ(counts.at("lives"), 2);
   EXPECT_TRUE(counts.at("parted").is_null()) << counts;
   const auto again = lines_of(bench.dir() / "again.ndjson");
+  command[3] = "/dev/stdout";
+  const Finished printed = run_program(command, bench.dir().path());
+  EXPECT_EQ(printed.out, whole_file(bench.dir() / "again.ndjson")) << "the lines alone";
   // Of the first life what was written before the kill, of the second all.
   const auto gap = std::find_if(all.begin(), all.end(), [](const std::string& line) {
     return line.find("without a word") != line.npos;

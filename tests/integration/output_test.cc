@@ -84,6 +84,7 @@ TEST_F(Outputs, TheRigWritesOverNoListOfPoses) {
   const Finished slip = run_program({program("mgt-rig"), "table", "--poses", list, "-o", list}, dir_.path());
   EXPECT_EQ(slip.exit_code, 2);
   EXPECT_THAT(slip.err, HasSubstr("would be overwritten"));
+  EXPECT_EQ(shell("\"$1\" table --seal x -o x").exit_code, 2);
   EXPECT_EQ(whole_file(list), text);
 }
 
@@ -155,6 +156,8 @@ TEST_F(Outputs, AProgramThatCannotPrintSaysSo) {
     const Finished full = shell(command + " > /dev/full");
     EXPECT_EQ(full.exit_code, 2) << command << full.signal;
     EXPECT_THAT(full.err, HasSubstr("cannot write to standard output: No space left on device")) << command;
+    const Finished both = shell(command + " > /dev/full 2>&1");
+    EXPECT_EQ(both.exit_code, 2) << command << both.signal;
     const Finished closed = shell(command + " >&-");
     EXPECT_EQ(closed.exit_code, 2) << command << closed.signal;
     EXPECT_THAT(closed.err, HasSubstr("cannot write to standard output: Bad file descriptor")) << command;

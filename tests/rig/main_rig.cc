@@ -94,7 +94,7 @@ std::optional<Scenario> load(const Arguments& args) {
 }
 
 int write(const std::string& path, const std::string& content) {
-  if (path.empty()) {
+  if (path.empty() || path == "/dev/stdout") {  // opened anew it would begin at the start of its file
     fmt::print("{}", content);
     return 0;
   }
@@ -106,6 +106,10 @@ int write(const std::string& path, const std::string& content) {
 
 /// Whether a file that is to be written is one that is read; it says so.
 bool overwrites_input(const Arguments& args) {
+  if (!args.seal.empty() && args.seal == args.output) {
+    fmt::print(stderr, "mgt-rig: --seal and -o name one file: the table would overwrite the truth\n");
+    return true;
+  }
   for (const std::string& to : {args.output, args.seal}) {
     for (const std::string& from : {args.scenario, args.poses}) {
       std::error_code not_there;

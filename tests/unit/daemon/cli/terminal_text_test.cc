@@ -33,6 +33,11 @@ TEST(TerminalText, AWordThatIsTooLongStaysWhole) {
   EXPECT_EQ(fitted("see /a/path/that/is/far/too/long now\n", 20), "see\n/a/path/that/is/far/too/long\nnow\n");
 }
 
+TEST(TerminalText, ACommandToCopyStaysWhole) {
+  const std::string command = "  mgt define run.mgtrun law1 'T_degC - 20' --unit nT/degC\n";
+  EXPECT_EQ(fitted(command, 20), command);
+}
+
 TEST(TerminalText, WidthIsCountedInCharacters) {
   EXPECT_EQ(fitted("12 ± 3 ± 4 ± 5 ± 6 ±\n", 21), "12 ± 3 ± 4 ± 5 ± 6 ±\n");
 }
