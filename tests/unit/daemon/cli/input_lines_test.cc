@@ -60,15 +60,27 @@ TEST_F(TypedLines, ASignalJustBeforeTheWaitEndsIt) {
 }
 
 /// Whatever the program waits for after the first, a daemon that hangs for instance.
-TEST_F(TypedLines, ASecondSignalEndsTheProgram) {
+TEST_F(TypedLines, ASecondCtrlCEndsTheProgram) {
   EXPECT_EXIT(
       {
-        catch_interrupts({SIGUSR1});
-        std::raise(SIGUSR1);
-        std::raise(SIGUSR1);
+        catch_interrupts({SIGINT});
+        std::raise(SIGINT);
+        std::raise(SIGINT);
         std::_Exit(0);
       },
-      ::testing::KilledBySignal(SIGUSR1), "");
+      ::testing::KilledBySignal(SIGINT), "");
+}
+
+/// A terminal that is closed sends it twice, and what was begun is to be ended in order.
+TEST_F(TypedLines, ATerminalThatClosesDoesNot) {
+  EXPECT_EXIT(
+      {
+        catch_interrupts({SIGHUP});
+        std::raise(SIGHUP);
+        std::raise(SIGHUP);
+        std::_Exit(interrupted() ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
 }
 
 TEST_F(TypedLines, ASignalDuringTheWaitEndsIt) {
