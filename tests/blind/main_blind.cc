@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "tests/blind/page.h"
+#include "tests/blind/real_kind.h"
 
 namespace mgtd::calib::testing {
 namespace {
@@ -47,6 +48,14 @@ std::string page(const Sizes& n, const std::vector<std::string>& only, const std
   return out;
 }
 
+/// A misspelt name would measure nothing without a word.
+std::string refuse_unknown_kind(const std::string& name) {
+  const auto called = [&](const RealKind& kind) { return is_called(kind, name); };
+  for (const auto* kinds : {&real_kinds(), &site_kinds()})
+    if (std::any_of(kinds->begin(), kinds->end(), called)) return {};
+  return fmt::format("no kind of run is called '{}'", name);
+}
+
 }  // namespace
 }  // namespace mgtd::calib::testing
 
@@ -64,7 +73,8 @@ int main(int argc, char** argv) {
                  "sections: clean naming one-field one-sensor two open oracle paper real-noise site")
       ->delimiter(',');
   app.add_option("--kind", sizes.kinds, "kinds of real-noise and site; 'walk' also stands for walk-1")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(&refuse_unknown_kind);
   app.add_option("--first-seed", sizes.first_seed, "of real-noise and site")->capture_default_str();
   app.add_option("--keep", sizes.keep, "folder for the pose tables of runs that went wrong there");
   app.add_option("--answers", sizes.answers,

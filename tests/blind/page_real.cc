@@ -210,10 +210,8 @@ std::string seeds(const Sizes& n) {
 std::vector<RealKind> chosen(const std::vector<RealKind>& all, const std::vector<std::string>& names) {
   std::vector<RealKind> out;
   for (const RealKind& kind : all) {
-    // "walk" stands for walk-0.3, walk-1 ...
-    const bool wanted = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-      return kind.name == name || kind.name.starts_with(name + "-");
-    });
+    const bool wanted = std::any_of(names.begin(), names.end(),
+                                    [&](const std::string& name) { return is_called(kind, name); });
     if (names.empty() || wanted) out.push_back(kind);
   }
   return out;

@@ -50,4 +50,9 @@ struct RealKind {
 /// Effects of the site, of sizes in units of their own uncertainty.
 [[nodiscard]] const std::vector<RealKind>& site_kinds();
 
+/// "walk" stands for walk-0.3, walk-1 ...
+[[nodiscard]] inline bool is_called(const RealKind& kind, const std::string& name) {
+  return kind.name == name || kind.name.starts_with(name + "-");
+}
+
 }  // namespace mgtd::calib::testing
