@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -7,6 +6,7 @@
 
 #include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/unrolled_channels.h"
+#include "calib/linear/cholesky4.h"
 #include "calib/linear/parts.h"
 
 namespace mgtd::calib::fit::joint {
@@ -82,35 +82,22 @@ struct Felt {
   }
 };
 
-/// Y L' = U, column by column: L is too small for a blocked solve to pay.
-void divide_by_factor(const Eigen::Matrix<double, Eigen::Dynamic, kNuisances>& U,
-                      const Eigen::LLT<Eigen::Matrix4d>& llt,
-                      Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, kNuisances>> Y) {
-  const Eigen::Matrix4d& L = llt.matrixLLT();
-  for (int j = 0; j < kNuisances; ++j) {
-    Y.col(j) = U.col(j);
-    for (int i = 0; i < j; ++i) Y.col(j) -= L(j, i) * Y.col(i);
-    Y.col(j) *= 1 / L(j, j);
-  }
-}
-
 /// Adds J' J and J' r of the fixed block, lower triangle, reading rows then scalar row.
 void add_fixed(const FixedSlots& slots, const PoseBlocks& b, const JointPose& pose, Felt& felt,
                Reduced& out) {
   const int block = slots.sensor_block();
   for (int i = 0; i < slots.sensors; ++i) {
-    const auto w = pose.weight.segment<3>(3 * i).asDiagonal();
-    const Eigen::Matrix<double, 3, sensor::kSensorParameters> A = w * b.linear.d_sensor.middleRows<3>(3 * i);
+    const auto& A = b.by_sensor[static_cast<std::size_t>(i)];
     const Eigen::Vector3d r = b.residual.segment<3>(3 * i);
     const int at = sensor::kSensorParameters * i;
     // lazyProduct: these are too small for blocking to pay.
-    out.S.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += A.transpose().lazyProduct(A);
-    out.g.segment<sensor::kSensorParameters>(at) += A.transpose().lazyProduct(r);
+    out.S.block<sensor::kSensorParameters, sensor::kSensorParameters>(at, at) += A.lazyProduct(A.transpose());
+    out.g.segment<sensor::kSensorParameters>(at) += A.lazyProduct(r);
     felt.take(b.linear, pose.weight, i, block);
     for (std::size_t j = 0; j < felt.slots.size(); ++j) {
       const Eigen::Vector3d column = felt.rows.col(static_cast<Eigen::Index>(j));
       const Eigen::Index slot = felt.slots[j];
-      out.S.row(slot).segment<sensor::kSensorParameters>(at) += column.transpose().lazyProduct(A);
+      out.S.row(slot).segment<sensor::kSensorParameters>(at) += A.lazyProduct(column).transpose();
       for (std::size_t k = j; k < felt.slots.size(); ++k)
         out.S(felt.slots[k], slot) += column.dot(felt.rows.col(static_cast<Eigen::Index>(k)));
       out.g[slot] += column.dot(r);
@@ -173,11 +160,12 @@ void assemble(const JointProblem& problem, const PoseModel& model, const JointSt
   if (wanted != Blocks::border) return;
   const Eigen::Index globals = out.linear.d_global.cols();
   out.U.resize(problem.slots().sensor_block() + globals, kNuisances);
+  out.by_sensor.resize(problem.geometry.sensors());
   for (int i = 0; i < problem.sensors(); ++i) {
-    const Eigen::Matrix<double, 3, kNuisances> wN =
-        pose.weight.segment<3>(3 * i).asDiagonal() * out.N.middleRows<3>(3 * i);
+    auto& A = out.by_sensor[static_cast<std::size_t>(i)];
+    A = out.linear.d_sensor.middleRows<3>(3 * i).transpose() * pose.weight.segment<3>(3 * i).asDiagonal();
     out.U.middleRows<sensor::kSensorParameters>(sensor::kSensorParameters * i) =
-        out.linear.d_sensor.middleRows<3>(3 * i).transpose().lazyProduct(wN);
+        A.lazyProduct(out.N.middleRows<3>(3 * i));
   }
   const sensor::ChannelRows<kNuisances> wN = pose.weight.asDiagonal() * out.N;
   over_unrolled_channels(wN.rows(), [&](auto rows) {
@@ -211,10 +199,11 @@ Reduced reduce_poses(const JointProblem& problem, const PoseModel& model, const 
     add_fixed(problem.slots(), b, problem.poses[k], felt, out);
     add_cost(b.cost, out.cost);
     b.H.diagonal() *= 1 + damping;
-    const Eigen::LLT<Eigen::Matrix4d> llt(b.H);
+    const linear::Cholesky4 H(b.H);
     auto Y = batch.middleCols<kNuisances>(filled * kNuisances);
-    divide_by_factor(b.U, llt, Y);
-    const Nuisance half = llt.matrixL().solve(b.g);
+    Y = b.U;
+    H.whiten(Y.transpose());
+    const Nuisance half = H.whitened(b.g);
     out.g.noalias() -= Y * half;
     out.predicted_decrease += half.squaredNorm();
     if (++filled == kBatch) flush();

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-
 #include "calib/fit/joint/unrolled_channels.h"
 #include "calib/linear/cholesky.h"
+#include "calib/linear/cholesky4.h"
 #include "calib/linear/parts.h"
 
 namespace mgtd::calib::fit::joint {
@@ -31,7 +30,7 @@ void move_nuisances(const JointProblem& problem, const JointState& from, const E
                              [&](auto n) { b.g -= b.N.topRows(n).transpose() * moved.head(n); });
       b.g -= b.scalar.global.dot(globals) * b.scalar.nuisance.transpose();
       b.H.diagonal() *= 1 + damping;
-      to.nuisances[k] += b.H.llt().solve(b.g);
+      to.nuisances[k] += linear::Cholesky4(b.H).solve(b.g);
     }
   });
 }
@@ -113,7 +112,7 @@ void refit_nuisances(const JointProblem& problem, JointState& state) {
     for (std::size_t k = first; k < end; ++k) {
       for (int i = 0; i < kSteps; ++i) {
         assemble(problem, model, state, k, Blocks::own, b);
-        const Nuisance step = b.H.llt().solve(b.g);
+        const Nuisance step = linear::Cholesky4(b.H).solve(b.g);
         state.nuisances[k] += step;
         if (step.dot(b.g) < kConverged) break;
       }

@@ -37,7 +37,9 @@ struct PoseBlocks {
   PoseLinear linear;
   Channels residual;  ///< w (measured - predicted)
   ScalarRow scalar;
-  sensor::ChannelRows<kNuisances> N;                    ///< w dy/d(nuisances)
+  sensor::ChannelRows<kNuisances> N;  ///< w dy/d(nuisances)
+  /// (w dy/d(parameters))' of each sensor, its own rows.
+  PerSensor<Eigen::Matrix<double, sensor::kSensorParameters, 3>> by_sensor;
   Eigen::Matrix<double, kNuisances, kNuisances> H;      ///< of the nuisances
   Nuisance g;                                           ///< descent direction times H: J_n' w^2 (y - y(x))
   Eigen::Matrix<double, Eigen::Dynamic, kNuisances> U;  ///< fixed by nuisances
@@ -45,7 +47,8 @@ struct PoseBlocks {
 };
 
 /// How much of PoseBlocks is wanted: what the pose's own unknowns need, the derivatives by the fixed block
-/// too (linear.d_sensor, linear.d_global), or U as well. What is not wanted is left without meaning.
+/// too (linear.d_sensor, linear.d_global), or by_sensor and U as well. What is not wanted is left without
+/// meaning.
 enum class Blocks { own, rows, border };
 
 void assemble(const JointProblem& problem, const PoseModel& model, const JointState& state, std::size_t pose,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/pose_blame.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "calib/linear/cholesky4.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
 
@@ -116,17 +116,17 @@ PoseBlame::Trial PoseBlame::without(const Rows& out) {
   if (out[static_cast<std::size_t>(channels)]) pose.f_weight = 0;
   for (int i = 0; i < kSteps; ++i) {
     assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
-    const Nuisance step = blocks_.H.llt().solve(blocks_.g);
+    const Nuisance step = linear::Cholesky4(blocks_.H).solve(blocks_.g);
     at_.nuisances.front() += step;
     if (step.dot(blocks_.g) < kSolved) break;
   }
   assemble(alone_, model_, at_, 0, Blocks::own, blocks_);
-  const Eigen::LLT<Eigen::Matrix4d> H(blocks_.H);
+  const linear::Cholesky4 H(blocks_.H);
   Trial trial{.t = Observations::Zero(channels + 2),
               .chi2 = blocks_.cost.readings + blocks_.cost.scalar,
               .nuisance = at_.nuisances.front()};
   const auto whitened = [&](double residual, const Eigen::Matrix<double, 1, kNuisances>& row) {
-    const double free = 1 - H.matrixL().solve(row.transpose()).squaredNorm();
+    const double free = 1 - H.whitened(row.transpose()).squaredNorm();
     return free > 1e-6 ? std::abs(residual) / std::sqrt(free) : 0;
   };
   for (int c = 0; c < channels; ++c)

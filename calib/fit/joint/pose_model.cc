@@ -36,13 +36,6 @@ struct PoseModel::Attitude {
   Eigen::Matrix<double, kTable, Eigen::Dynamic> state_d_coefficient;
 };
 
-struct PoseModel::Field {
-  Eigen::Vector3d b_P_nT;
-  Eigen::Matrix<double, 3, kNuisances> d_nuisance;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> d_global;
-  effects::TermSum terms;  ///< of the level that is summed just now
-};
-
 PoseModel::PoseModel(const JointProblem& problem, const JointState& state)
     : state_(state),
       table_(problem.effects, effects::Level::table),
@@ -112,7 +105,7 @@ void PoseModel::set_attitude(const JointPose& pose, const Nuisance& nuisance, At
 
 /// b = R B(R' r): every variable that turns R moves the direction and, through x = R' r, the place.
 void PoseModel::add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
-                                 const Eigen::Vector3d& r_P_m, Field& field) const {
+                                 const Eigen::Vector3d& r_P_m, SensorField& field) const {
   const Eigen::Matrix3d through_place = a.R * dB_dx;
   const auto column = [&](std::size_t j) -> Eigen::Vector3d {
     return a.dR[j] * B_S + through_place * (a.dR[j].transpose() * r_P_m);
@@ -131,7 +124,7 @@ void PoseModel::add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, 
   }
 }
 
-void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, Field& field) const {
+void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, SensorField& field) const {
   field.d_global.setZero(3, globals_);
   field.d_nuisance.setZero();
   if (!a.known) {
@@ -153,7 +146,7 @@ void PoseModel::field_at(const JointPose& pose, const Attitude& a, int sensor, F
   add_site_columns(a, B_S, dB_dx, r_P_m, field);
 }
 
-void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int sensor, Field& field) const {
+void PoseModel::add_platform(const JointPose& pose, const Attitude& a, int sensor, SensorField& field) const {
   if (platform_.empty()) return;
   Eigen::Matrix<double, 6, 1> in = Eigen::Matrix<double, 6, 1>::Zero();
   in.head<3>() = field.b_P_nT;
@@ -228,7 +221,7 @@ Eigen::RowVector3d PoseModel::reference_terms(const JointPose& pose, const Attit
   return by_u * a.R * (Eigen::Matrix3d::Identity() - u_S * u_S.transpose()) / B_S.norm();
 }
 
-void PoseModel::read(const JointPose& pose, int sensor, Field& field, Derivatives wanted,
+void PoseModel::read(const JointPose& pose, int sensor, SensorField& field, Derivatives wanted,
                      PoseLinear& out) const {
   const bool fixed = wanted == Derivatives::fixed;
   const auto i = static_cast<std::size_t>(sensor);
@@ -273,7 +266,7 @@ void PoseModel::linearise(const JointPose& pose, const Nuisance& nuisance, PoseL
   Attitude a;
   set_attitude(pose, nuisance, a);
   scalar_field(pose, a, out);
-  Field field;
+  SensorField& field = out.field;
   for (int sensor = 0; sensor < sensors; ++sensor) {
     // Without site and platform effects the sensors share one field.
     if (sensor == 0 || !site_.empty() || !platform_.empty()) {

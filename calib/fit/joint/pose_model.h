@@ -10,6 +10,14 @@
 /// Jacobian. Levels in order: table, site, platform, sensor, axis.
 namespace mgtd::calib::fit::joint {
 
+/// The field that one sensor stands in.
+struct SensorField {
+  Eigen::Vector3d b_P_nT;
+  Eigen::Matrix<double, 3, kNuisances> d_nuisance;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> d_global;
+  effects::TermSum terms;  ///< of the level that is summed just now
+};
+
 struct PoseLinear {
   Channels y_nT;  ///< predicted readings
   /// Rows of sensor i by the parameters of sensor i.
@@ -19,6 +27,7 @@ struct PoseLinear {
   double f_nT{0};            ///< predicted |B(0)|
   Eigen::Matrix<double, 1, kNuisances> f_nuisance;
   Eigen::RowVectorXd f_global;
+  SensorField field;  ///< at the last sensor: storage that is used again from pose to pose
 };
 
 /// By which unknowns a pose is differentiated: its own alone (d_nuisance, f_nuisance and the rows of the
@@ -38,7 +47,6 @@ class PoseModel {
 
  private:
   struct Attitude;
-  struct Field;
   struct SensorGain {
     Eigen::Matrix3d gain;                   ///< C A R'
     std::array<Eigen::Matrix3d, 9> d_gain;  ///< by theta, phi, psi, cx, cy, cz, alpha, beta, gamma
@@ -47,13 +55,13 @@ class PoseModel {
   [[nodiscard]] Eigen::Matrix3d attitude(const JointPose& pose, const Nuisance& nuisance) const;
   void set_attitude(const JointPose& pose, const Nuisance& nuisance, Attitude& a) const;
   void add_site_columns(const Attitude& a, const Eigen::Vector3d& B_S, const Eigen::Matrix3d& dB_dx,
-                        const Eigen::Vector3d& r_P_m, Field& field) const;
-  void field_at(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
-  void add_platform(const JointPose& pose, const Attitude& a, int sensor, Field& field) const;
+                        const Eigen::Vector3d& r_P_m, SensorField& field) const;
+  void field_at(const JointPose& pose, const Attitude& a, int sensor, SensorField& field) const;
+  void add_platform(const JointPose& pose, const Attitude& a, int sensor, SensorField& field) const;
   void scalar_field(const JointPose& pose, const Attitude& a, PoseLinear& out) const;
   [[nodiscard]] Eigen::RowVector3d reference_terms(const JointPose& pose, const Attitude& a,
                                                    const Eigen::Vector3d& B_S, PoseLinear& out) const;
-  void read(const JointPose& pose, int sensor, Field& field, Derivatives wanted, PoseLinear& out) const;
+  void read(const JointPose& pose, int sensor, SensorField& field, Derivatives wanted, PoseLinear& out) const;
 
   const JointState& state_;
   effects::LevelTerms table_, site_, platform_, axis_, reference_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/pose_residuals.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "calib/linear/cholesky4.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -12,8 +13,8 @@ namespace {
 constexpr double kNothing = 1e-9;
 
 /// Freedom of an observation: one less its leverage through the pose's own nuisances.
-double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const Eigen::LLT<Eigen::Matrix4d>& H) {
-  return std::max(0.0, 1 - H.matrixL().solve(row.transpose()).squaredNorm());
+double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const linear::Cholesky4& H) {
+  return std::max(0.0, 1 - H.whitened(row.transpose()).squaredNorm());
 }
 
 struct NoiseSums {
@@ -22,8 +23,8 @@ struct NoiseSums {
   int attitudes{0};
 };
 
-void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::LLT<Eigen::Matrix4d>& H,
-                      Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
+void observe_readings(const JointPose& pose, const PoseBlocks& b, const linear::Cholesky4& H, Eigen::Index k,
+                      NoiseSums& sums, PoseResiduals& out) {
   for (int c = 0; c < pose.y_nT.size(); ++c) {
     if (!(pose.weight[c] > 0)) continue;
     const double free = freedom(b.N.row(c), H);
@@ -37,7 +38,7 @@ void observe_readings(const JointPose& pose, const PoseBlocks& b, const Eigen::L
 }
 
 void observe_scalar(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b,
-                    const Eigen::LLT<Eigen::Matrix4d>& H, Eigen::Index k, PoseResiduals& out) {
+                    const linear::Cholesky4& H, Eigen::Index k, PoseResiduals& out) {
   if (!(pose.f_weight > 0) || problem.common_field) return;
   ++out.scalars;
   const double free = freedom(b.scalar.nuisance, H);
@@ -45,11 +46,12 @@ void observe_scalar(const JointProblem& problem, const JointPose& pose, const Po
     out.t(out.scalar_row(), k) = static_cast<float>(std::abs(b.scalar.residual) / std::sqrt(free));
 }
 
-void observe_attitude(const JointPose& pose, const Nuisance& x, const Eigen::LLT<Eigen::Matrix4d>& H,
-                      Eigen::Index k, NoiseSums& sums, PoseResiduals& out) {
+void observe_attitude(const JointPose& pose, const Nuisance& x, const linear::Cholesky4& H, Eigen::Index k,
+                      NoiseSums& sums, PoseResiduals& out) {
   if (!pose.has_angles || pose.attitude_weight <= kLooseAttitude_per_rad) return;
   const double w2 = pose.attitude_weight * pose.attitude_weight;
-  const double posterior = w2 * H.solve(Eigen::Matrix4d::Identity()).diagonal().head<3>().sum();
+  const double posterior =
+      w2 * H.solve(Eigen::Matrix4d(Eigen::Matrix4d::Identity())).diagonal().head<3>().sum();
   const double squares = w2 * x.head<3>().squaredNorm();
   sums.attitude_squares += squares;
   sums.attitude_trace += posterior;
@@ -80,7 +82,7 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   out.noise_ratio.resize(problem.sensors(), 3);
   for (std::size_t k = 0; k < problem.poses.size(); ++k) {
     assemble(problem, model, state, k, Blocks::own, b);
-    const Eigen::LLT<Eigen::Matrix4d> H(b.H);
+    const linear::Cholesky4 H(b.H);
     const auto at = static_cast<Eigen::Index>(k);
     observe_readings(problem.poses[k], b, H, at, sums, out);
     observe_scalar(problem, problem.poses[k], b, H, at, out);

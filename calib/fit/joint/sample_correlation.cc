@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/fit/joint/sample_correlation.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "calib/fit/joint/joint_solver.h"
+#include "calib/linear/cholesky4.h"
 
 namespace mgtd::calib::fit::joint {
 
@@ -23,8 +23,8 @@ SampleCorrelation sample_correlation(const JointProblem& problem, const JointSta
   double products = 0, traces = 0, squares = 0;
   for (const std::size_t k : order) {
     assemble(problem, model, state, k, Blocks::own, b);
-    const Eigen::LLT<Eigen::Matrix4d> H(b.H);
-    now = -b.N * H.solve(b.N.transpose());
+    const linear::Cholesky4 H(b.H);
+    now = -b.N * H.solve(sensor::ChannelColumns<kNuisances>(b.N.transpose()));
     now.diagonal().array() += (problem.poses[k].weight.array() > 0).cast<double>();
     e = b.residual;
     if (before.size() > 0) {
