@@ -95,7 +95,7 @@ void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
   const auto stage = calib::criticism::search::model_stage(table, options);
   if (!stage) return;
   if (auto steps = calib::criticism::search::waterfall(table, options)) {
-    const auto held_out = calib::fit::joint::held_out_errors(stage->fit);
+    const auto& held_out = stage->held_out;
     c.falls.push_back(
         calib::report::waterfall_of(*steps, held_out ? std::optional(held_out->residual_nT) : std::nullopt));
     c.waterfall = std::move(*steps);

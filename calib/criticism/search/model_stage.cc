@@ -29,7 +29,7 @@ Result<ModelStage> model_stage(const PoseTable& table, const fit::FitOptions& op
   if (!fit) return tl::unexpected(fit.error());
   ModelStage out{.options = *std::move(joint), .fit = std::move(*fit), .errors = {}};
   out.errors = fit::joint::joint_errors(out.fit.problem, out.fit.state, fit::joint::FixedBlock::fitted);
-  out.held_out = fit::joint::held_out_errors(out.fit);
+  out.held_out = fit::joint::held_out_errors(out.fit, fit::joint::reduce(out.fit.problem, out.fit.state, 0));
   return out;
 }
 

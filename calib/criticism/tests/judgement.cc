@@ -289,7 +289,9 @@ Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candida
   }
   if (!found.any()) return out;
   const bool asked = !walk.log10_p.empty();
-  if (auto covariance = fit::joint::covariance_with_wandering(out.fit, found))
+  if (auto covariance = fit::joint::covariance_with_wandering(
+          out.fit, fit::joint::reduce(out.fit.problem, out.fit.state, 0),
+          fit::joint::SlowCosines(out.fit.problem, out.fit.state), found))
     out.fit.covariance = *std::move(covariance);
   const Rates before_walk = std::move(out.criticism.rates);
   const double chi2 = out.criticism.chi2;

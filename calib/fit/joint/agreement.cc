@@ -22,10 +22,9 @@ constexpr double kByNoise = 16;
 /// and H = A S^-1 A', that is e' H (I - H)^-1 e in variance, and noise does trace H (I - H)^-1 of it. The
 /// first is at most e'e times the second, and e'e at most what the pose costs: one that costs little has no
 /// influence worth saying and need not be asked.
-void influence_of_poses(const JointFit& fit, Agreement& out) {
+void influence_of_poses(const JointFit& fit, const Eigen::MatrixXd& S, Agreement& out) {
   constexpr double kRounding = 0.99;
   const double scale = fit.noise_inflation / fit.birge_ratio;
-  const Eigen::MatrixXd S = reduce(fit.problem, fit.state, 0).S;
   JointProblem alone = without_poses_and_priors(fit.problem);
   alone.poses.resize(1);
   JointState at = without_poses(fit.state);
@@ -74,13 +73,14 @@ Scatter scatter_of(const JointFit& fit) {
   return out;
 }
 
-Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT) {
+Agreement agreement(const JointFit& fit, const Eigen::MatrixXd& S, double fitted_nT,
+                    std::optional<double> held_out_nT) {
   Agreement out;
   out.poses = static_cast<int>(fit.problem.poses.size());
   out.fitted_nT = fitted_nT;
   out.held_out_nT = held_out_nT;
   out.scatter = scatter_of(fit);
-  influence_of_poses(fit, out);
+  influence_of_poses(fit, S, out);
   return out;
 }
 

@@ -38,6 +38,8 @@ struct Agreement {
   double moved{0};
 };
 
-[[nodiscard]] Agreement agreement(const JointFit& fit, double fitted_nT, std::optional<double> held_out_nT);
+/// `S`: information of the fixed block at the end of the fit.
+[[nodiscard]] Agreement agreement(const JointFit& fit, const Eigen::MatrixXd& S, double fitted_nT,
+                                  std::optional<double> held_out_nT);
 
 }  // namespace mgtd::calib::fit::joint

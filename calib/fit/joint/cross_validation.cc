@@ -27,17 +27,17 @@ Fold fold_of(const JointFit& fit, std::size_t k) {
 }  // namespace
 
 bool for_each_fold_left_out(
-    const JointFit& fit, const std::function<void(const JointProblem& fold, const JointState& state)>& use) {
-  const Reduced all = reduce(fit.problem, fit.state, 0);
+    const JointFit& fit, const Reduced& equations,
+    const std::function<void(const JointProblem& fold, const JointState& state)>& use) {
   for (std::size_t k = 0; k < kFolds; ++k) {
     Fold fold = fold_of(fit, k);
     // Slots that nothing observes are held by a unit in both: they stay held.
-    Eigen::MatrixXd S = all.S - fold.share.S;
+    Eigen::MatrixXd S = equations.S - fold.share.S;
     for (Eigen::Index i = 0; i < S.rows(); ++i)
-      if (all.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
+      if (equations.S(i, i) == 1 && fold.share.S(i, i) == 1) S(i, i) = 1;
     const auto information = linear::Cholesky::of(S);
     if (!information) return false;
-    JointState moved = fold.state.moved(information->solve(Eigen::VectorXd(all.g - fold.share.g)));
+    JointState moved = fold.state.moved(information->solve(Eigen::VectorXd(equations.g - fold.share.g)));
     refit_nuisances(fold.problem, moved);
     use(fold.problem, moved);
   }
@@ -46,10 +46,12 @@ bool for_each_fold_left_out(
 
 std::optional<double> left_out_nT(const JointFit& fit) {
   PoseResiduals sums;
-  const bool all = for_each_fold_left_out(fit, [&](const JointProblem& fold, const JointState& state) {
-    const PoseResiduals more = pose_residuals(fold, state);
-    sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
-  });
+  const Reduced equations = reduce(fit.problem, fit.state, 0);
+  const bool all =
+      for_each_fold_left_out(fit, equations, [&](const JointProblem& fold, const JointState& state) {
+        const PoseResiduals more = pose_residuals(fold, state);
+        sums.squares_nT2 += more.squares_nT2, sums.freedom += more.freedom, sums.readings += more.readings;
+      });
   return all && sums.readings > 0 ? std::optional(sums.unseen_nT()) : std::nullopt;
 }
 

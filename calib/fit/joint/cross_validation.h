@@ -13,11 +13,12 @@
 /// where fitting ten times needs some thirty.
 namespace mgtd::calib::fit::joint {
 
-/// Calls `use` with the poses of each fold in turn and the state that the others give them: the fixed block
-/// one step on, each pose with its own best field and attitude. False where a fold cannot be left out; the
-/// folds before it have been used then.
+/// With the normal equations of all poses, undamped: calls `use` with the poses of each fold in turn and the
+/// state that the others give them: the fixed block one step on, each pose with its own best field and
+/// attitude. False where a fold cannot be left out; the folds before it have been used then.
 [[nodiscard]] bool for_each_fold_left_out(
-    const JointFit& fit, const std::function<void(const JointProblem& fold, const JointState& state)>& use);
+    const JointFit& fit, const Reduced& equations,
+    const std::function<void(const JointProblem& fold, const JointState& state)>& use);
 
 /// Residual (PoseResiduals::unseen_nT) on poses that were left out, nT. Empty where a fold cannot be left
 /// out.

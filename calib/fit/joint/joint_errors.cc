@@ -106,13 +106,13 @@ JointErrors joint_errors(const JointProblem& problem, const JointState& state, F
   return sums.errors(block);
 }
 
-std::optional<JointErrors> held_out_errors(const JointFit& fit) {
+std::optional<JointErrors> held_out_errors(const JointFit& fit, const Reduced& equations) {
   const std::size_t n = fit.problem.poses.size();
   ErrorSums sums;
   if (fit.problem.sensors() == 1 && is_recording(fit.problem)) {
     // Thousands of samples settle twelve parameters so well that one step is the whole way.
     const bool all = for_each_fold_left_out(
-        fit, [&](const JointProblem& fold, const JointState& state) { add(fold, state, sums); });
+        fit, equations, [&](const JointProblem& fold, const JointState& state) { add(fold, state, sums); });
     return all ? std::optional(sums.errors(FixedBlock::frozen)) : std::nullopt;
   }
   for (std::size_t fold = 0; fold < kFolds; ++fold) {

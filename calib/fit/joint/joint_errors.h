@@ -27,9 +27,9 @@ enum class FixedBlock { fitted, frozen };
 [[nodiscard]] JointErrors joint_errors(const JointProblem& problem, const JointState& state,
                                        FixedBlock block);
 
-/// Folds contiguous in time. The calibration of each fold is fitted to the others and frozen; of a pose left
-/// out only its own field (and, where the table's angles are known, attitude) is refitted. Empty when a fold
-/// cannot be fitted without its poses.
-[[nodiscard]] std::optional<JointErrors> held_out_errors(const JointFit& fit);
+/// With the normal equations of the fit, undamped. Folds contiguous in time. The calibration of each fold is
+/// fitted to the others and frozen; of a pose left out only its own field (and, where the table's angles are
+/// known, attitude) is refitted. Empty when a fold cannot be fitted without its poses.
+[[nodiscard]] std::optional<JointErrors> held_out_errors(const JointFit& fit, const Reduced& equations);
 
 }  // namespace mgtd::calib::fit::joint

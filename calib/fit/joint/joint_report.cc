@@ -102,7 +102,7 @@ FitSummary summary_of(const JointFit& fit, double final_cost) {
           .final_cost = final_cost};
 }
 
-void fill_statistics(const JointFit& fit, FitReport& report) {
+void fill_statistics(const JointFit& fit, const Reduced& equations, FitReport& report) {
   report.chi2 = fit.chi2;
   report.dof = fit.dof;
   report.noise_nT = fit.noise_nT();
@@ -118,7 +118,7 @@ void fill_statistics(const JointFit& fit, FitReport& report) {
   const JointErrors in = joint_errors(fit.problem, fit.state, FixedBlock::fitted);
   report.after = in.summary;
   report.residual_nT = in.residual_nT;
-  if (const auto out = held_out_errors(fit)) {
+  if (const auto out = held_out_errors(fit, equations)) {
     report.held_out = out->summary;
     report.held_out_residual_nT = out->residual_nT;
   }
@@ -201,9 +201,11 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   if (!joint) return tl::unexpected(joint.error());
   auto fit = fit_joint(table, *joint);
   if (!fit) return tl::unexpected(fit.error());
-  const WanderingEstimate wandering = wandering_of(*fit);
+  const Reduced equations = reduce(fit->problem, fit->state, 0);
+  const SlowCosines cosines(fit->problem, fit->state);
+  const WanderingEstimate wandering = wandering_of(*fit, equations, cosines);
   if (wandering.any()) {
-    if (auto covariance = covariance_with_wandering(*fit, wandering))
+    if (auto covariance = covariance_with_wandering(*fit, equations, cosines, wandering))
       fit->covariance = *std::move(covariance);
   }
   FitOptions with_field = options;
@@ -213,23 +215,22 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   FitReport report;
   report.calibration = calibration_frame(table, *readings, options);
   fill_calibration(*fit, report.calibration);
-  fill_statistics(*fit, report);
+  fill_statistics(*fit, equations, report);
   compare_methods(*readings, with_field, *fit, report);
   report.check_poses = errors_of_check_poses(table, *joint, *fit);
   report.stated_table_sd_rad = options.table_sd_rad;
-  const Reduced reduced = reduce(fit->problem, fit->state, 0);
-  report.summary = summary_of(*fit, reduced.cost.total());
-  report.joint = std::make_shared<const JointFindings>(
-      JointFindings{.gauge = fit->gauge,
-                    .common_rotation_sd_rad = fit->common_rotation_sd_rad,
-                    .birge_ratio = fit->birge_ratio,
-                    .samples_per_effective = fit->samples_per_effective,
-                    .known = identifiability(fit->problem, fit->state, reduced.S, report.site.f_nT),
-                    .agreement = agreement(*fit, report.residual_nT, report.held_out_residual_nT),
-                    .wandering = wandering,
-                    .quantisation = fit->quantisation,
-                    .reference_scatter = reference_scatter(table, *fit),
-                    .dwell_motion = fit->sample_noise_nT ? dwell_motion(table) : std::nullopt});
+  report.summary = summary_of(*fit, equations.cost.total());
+  report.joint = std::make_shared<const JointFindings>(JointFindings{
+      .gauge = fit->gauge,
+      .common_rotation_sd_rad = fit->common_rotation_sd_rad,
+      .birge_ratio = fit->birge_ratio,
+      .samples_per_effective = fit->samples_per_effective,
+      .known = identifiability(fit->problem, fit->state, equations.S, report.site.f_nT),
+      .agreement = agreement(*fit, equations.S, report.residual_nT, report.held_out_residual_nT),
+      .wandering = wandering,
+      .quantisation = fit->quantisation,
+      .reference_scatter = reference_scatter(table, *fit),
+      .dwell_motion = fit->sample_noise_nT ? dwell_motion(table) : std::nullopt});
   return report;
 }
 

@@ -7,7 +7,7 @@
 
 /// slow_sums() computes what a joint fit says about the terms of offsets that wander (wandering.h): its
 /// normal equations are bordered by one column per channel and term, for offsets of unit size. Column
-/// kWanderingTerms c + j is term j of channel c.
+/// kWanderingTerms c + j is term j of channel c. SlowCosines goes through the poses once, for every spectrum.
 namespace mgtd::calib::fit::joint {
 
 /// The terms of the run of these poses.
@@ -19,15 +19,30 @@ struct SlowEquations {
   Eigen::MatrixXd by_fixed;  ///< fixed block x slow
   Eigen::MatrixXd gram;      ///< slow x slow
   Eigen::VectorXd by_residual;
-
-  SlowEquations& operator+=(const SlowEquations& other) {
-    by_fixed += other.by_fixed, gram += other.gram, by_residual += other.by_residual;
-    return *this;
-  }
 };
 
-[[nodiscard]] SlowEquations slow_equations(const JointProblem& problem, const JointState& state,
-                                           const WanderingTerms& terms);
+/// Sums over the poses of what they contribute times the cosines of the run. The products of two cosines are
+/// sums of two, 2 cos(i x) cos(j x) = cos((i - j) x) + cos((i + j) x), so 2 kWanderingTerms + 1 of them hold
+/// the whole gram matrix of two channels.
+class SlowCosines {
+ public:
+  SlowCosines(const JointProblem& problem, const JointState& state);
+  /// `terms` of the same run. Empty where the poses have no time.
+  [[nodiscard]] SlowEquations of(const WanderingTerms& terms) const;
+
+ private:
+  struct Sums {
+    Eigen::MatrixXd by_fixed;     ///< fixed block x channels, in one column, by cosine
+    Eigen::MatrixXd products;     ///< cosine of a multiple by pair of channels
+    Eigen::MatrixXd by_residual;  ///< cosine by channel
+    Sums& operator+=(const Sums& other) {
+      by_fixed += other.by_fixed, products += other.products, by_residual += other.by_residual;
+      return *this;
+    }
+  };
+  Eigen::Index channels_, fixed_;
+  Sums sums_;
+};
 
 /// Products of the slow terms U with each other and with the residual r, everything else of the model
 /// projected out.
@@ -45,7 +60,8 @@ struct SlowSums {
   [[nodiscard]] SlowSums without(const Eigen::MatrixXd& by_columns, const Eigen::VectorXd& r) const;
 };
 
-/// Empty gram where the poses have no time.
-[[nodiscard]] SlowSums slow_sums(const JointFit& fit, SlowSpectrum spectrum = SlowSpectrum::walk);
+/// With the normal equations of the fit, undamped, and its cosines. Empty gram where the poses have no time.
+[[nodiscard]] SlowSums slow_sums(const JointFit& fit, const Reduced& equations, const SlowCosines& cosines,
+                                 SlowSpectrum spectrum = SlowSpectrum::walk);
 
 }  // namespace mgtd::calib::fit::joint

@@ -84,7 +84,7 @@ WanderingTerms::WanderingTerms(double from_h, double to_h, SlowSpectrum spectrum
 }
 
 Terms WanderingTerms::at(double t_h) const {
-  const double turn = pi * (t_h - from_h_) / length_h_;
+  const double turn = phase(t_h);
   const Terms cosines =
       Terms::NullaryExpr([&](Eigen::Index i) { return sqrt2 * std::cos(static_cast<double>(i + 1) * turn); });
   return factor_.transpose() * cosines;

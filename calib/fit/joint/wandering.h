@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <numbers>
 
 #include "calib/calibration/tensor.h"
 
@@ -40,6 +41,12 @@ class WanderingTerms {
   /// L' the covariance of all z_j. From that of flicker the mean power of the faster terms is taken, which is
   /// part of the white noise from pose to pose.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> at(double t_h) const;
+  /// pi (t - t0) / T.
+  [[nodiscard]] double phase(double t_h) const { return std::numbers::pi * (t_h - from_h_) / length_h_; }
+  /// L: the coefficients z are L times independent ones of unit variance.
+  [[nodiscard]] const Eigen::Matrix<double, kWanderingTerms, kWanderingTerms>& factor() const {
+    return factor_;
+  }
   [[nodiscard]] double to_h() const { return from_h_ + length_h_; }
   /// Covariance of those coefficients with the offset at the end of the run, nT.
   [[nodiscard]] Eigen::Matrix<double, kWanderingTerms, 1> by_end() const;

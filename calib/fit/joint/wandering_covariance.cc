@@ -59,16 +59,17 @@ Eigen::MatrixXd covariance_beside(const JointProblem& problem, const JointState&
 
 }  // namespace
 
-std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, const WanderingEstimate& w) {
+std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit, const Reduced& equations,
+                                                         const SlowCosines& cosines,
+                                                         const WanderingEstimate& w) {
   const WanderingTerms terms = wandering_terms(fit.problem, w.spectrum);
-  const Reduced reduced = reduce(fit.problem, fit.state, 0);
-  const auto information = linear::Cholesky::of(reduced.S);
+  const auto information = linear::Cholesky::of(equations.S);
   if (!information || !terms.any()) return std::nullopt;
   const WhiteNoise white = white_noise(fit, w, terms);
-  Eigen::MatrixXd errors = information->solve(slow_equations(fit.problem, fit.state, terms).by_fixed);
+  Eigen::MatrixXd errors = information->solve(cosines.of(terms).by_fixed);
   Eigen::MatrixXd out = white.common * information->inverse() +
                         covariance_beside(fit.problem, fit.state, *information, white.beside);
-  out = fit.samples_per_effective * out + filled_in_error(fit, reduced);
+  out = fit.samples_per_effective * out + filled_in_error(fit, equations);
   const auto by_end = terms.by_end();
   for (int c = 0; c < fit.problem.channels(); ++c) {
     const int offset = sensor::kSensorParameters * (c / 3) + sensor::ix + c % 3;

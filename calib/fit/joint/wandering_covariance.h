@@ -17,8 +17,11 @@ namespace mgtd::calib::fit::joint {
 ///     offsets at the end + filled_in_error(),
 /// n the samples of a recording that count as one (JointFit::samples_per_effective), W what the terms beyond
 /// the last, which look white from pose to pose, add to the covariance of the normal equations. How much
-/// further an offset wanders after the run is not in it. Empty where S is not positive definite.
+/// further an offset wanders after the run is not in it. `equations` and `cosines` as slow_sums() takes them.
+/// Empty where S is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance_with_wandering(const JointFit& fit,
+                                                                       const Reduced& equations,
+                                                                       const SlowCosines& cosines,
                                                                        const WanderingEstimate& wandering);
 
 }  // namespace mgtd::calib::fit::joint

@@ -218,11 +218,11 @@ double unequal_noise_evidence(const JointFit& fit) {
                   fit.dof / fit.samples_per_effective * (std::log(squares.mean()) - squares.log().mean()));
 }
 
-WanderingEstimate wandering_of(const JointFit& fit) {
+WanderingEstimate wandering_of(const JointFit& fit, const Reduced& equations, const SlowCosines& cosines) {
   WanderingEstimate best;
   for (const SlowSpectrum spectrum : {SlowSpectrum::walk, SlowSpectrum::flicker}) {
-    WanderingEstimate found =
-        estimate_wandering(SlowLikelihood(slow_sums(fit, spectrum).thinned(fit.samples_per_effective)));
+    WanderingEstimate found = estimate_wandering(
+        SlowLikelihood(slow_sums(fit, equations, cosines, spectrum).thinned(fit.samples_per_effective)));
     found.spectrum = spectrum;
     if (found.evidence > best.evidence) best = std::move(found);
   }

@@ -62,6 +62,7 @@ inline constexpr double kWanderingEvidence = 9.2;
 
 /// What wanders in a fit and is worth saying, as the spectrum with the larger evidence has it:
 /// estimate_wandering() against unequal_noise_evidence().
-[[nodiscard]] WanderingEstimate wandering_of(const JointFit& fit);
+[[nodiscard]] WanderingEstimate wandering_of(const JointFit& fit, const Reduced& equations,
+                                             const SlowCosines& cosines);
 
 }  // namespace mgtd::calib::fit::joint

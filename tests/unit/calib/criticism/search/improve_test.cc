@@ -50,7 +50,7 @@ TEST(LeftOut, IsTheErrorThatTenFitsFind) {
   const auto fit = fit::joint::fit_joint(table, options);
   ASSERT_TRUE(fit);
   const auto quick = fit::joint::left_out_nT(*fit);
-  const auto fits = fit::joint::held_out_errors(*fit);
+  const auto fits = fit::joint::held_out_errors(*fit, fit::joint::reduce(fit->problem, fit->state, 0));
   ASSERT_TRUE(quick && fits);
   EXPECT_NEAR(*quick, fits->residual_nT, 1e-3 * fits->residual_nT);
   EXPECT_GT(*quick,

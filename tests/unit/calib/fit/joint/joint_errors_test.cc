@@ -30,7 +30,7 @@ TEST(JointErrors, NoiseOnlyStaysNoiseOutOfSample) {
   const auto fit = fit_joint(table, {});
   ASSERT_TRUE(fit);
   const JointErrors in = joint_errors(fit->problem, fit->state, FixedBlock::fitted);
-  const auto out = held_out_errors(*fit);
+  const auto out = held_out_errors(*fit, reduce(fit->problem, fit->state, 0));
   ASSERT_TRUE(out);
   // 45 parameters on 1500 degrees of freedom cost some 3 % twice.
   EXPECT_GT(out->residual_nT, in.residual_nT);
@@ -48,7 +48,7 @@ TEST(JointErrors, OneStepLeavesAFoldOutAsFittingWithoutItDoes) {
   const auto fit = fit_joint(table, options);
   ASSERT_TRUE(fit) << fit.error().text();
   ASSERT_TRUE(is_recording(fit->problem));
-  const auto in_one_step = held_out_errors(*fit);
+  const auto in_one_step = held_out_errors(*fit, reduce(fit->problem, fit->state, 0));
   ASSERT_TRUE(in_one_step);
   const std::size_t n = fit->problem.poses.size();
   double squares = 0, freedom = 0;
@@ -116,7 +116,8 @@ TEST(JointErrors, MissingGradientShowsOutOfSampleAndItsTermTakesItAway) {
   options.effects = {*effects::library::make_effect("site.gradient")};
   const auto with = fit_joint(table, options);
   ASSERT_TRUE(without && with);
-  const auto before = held_out_errors(*without), after = held_out_errors(*with);
+  const auto before = held_out_errors(*without, reduce(without->problem, without->state, 0)),
+             after = held_out_errors(*with, reduce(with->problem, with->state, 0));
   ASSERT_TRUE(before && after);
   EXPECT_GT(before->residual_nT, 2.5);
   EXPECT_LT(after->residual_nT, 1.1);

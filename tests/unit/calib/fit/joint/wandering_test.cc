@@ -105,10 +105,20 @@ TEST(Wandering, FlickerKeepsAPositiveCovarianceHoweverManyPoses) {
 
 TEST(Wandering, NothingWandersWithoutTime) { EXPECT_FALSE(WanderingTerms(2, 2).any()); }
 
+Reduced equations_of(const JointFit& fit) { return reduce(fit.problem, fit.state, 0); }
+SlowCosines cosines_of(const JointFit& fit) { return {fit.problem, fit.state}; }
+SlowSums sums_of(const JointFit& fit) { return slow_sums(fit, equations_of(fit), cosines_of(fit)); }
+WanderingEstimate found_in(const JointFit& fit) {
+  return wandering_of(fit, equations_of(fit), cosines_of(fit));
+}
+Eigen::MatrixXd covariance_with(const WanderingEstimate& wandering, const JointFit& fit) {
+  return covariance_with_wandering(fit, equations_of(fit), cosines_of(fit), wandering).value();
+}
+
 WanderingEstimate estimate_of(const PoseTable& table) {
   const auto fit = fit_joint(table, joint_options({}));
   EXPECT_TRUE(fit);
-  return estimate_wandering(SlowLikelihood(slow_sums(*fit)));
+  return estimate_wandering(SlowLikelihood(sums_of(*fit)));
 }
 
 /// An offset that is shifted by e times one of its terms u changes chi-square, where everything else follows,
@@ -118,7 +128,7 @@ TEST(SlowSums, AreWhatChiSquareDoesWhenAnOffsetIsShifted) {
   const auto fit = fit_joint(table, {});
   ASSERT_TRUE(fit) << fit.error().text();
   ASSERT_GT(linear::parts_of_poses(fit->problem.poses.size()), 2U);
-  const SlowSums sums = slow_sums(*fit);
+  const SlowSums sums = sums_of(*fit);
   const WanderingTerms terms = wandering_terms(fit->problem);
   struct Shift {
     Eigen::Index channel, term;
@@ -205,13 +215,13 @@ TEST(WanderingOf, TellsFlickerFromAWalk) {
     run.hidden = flickering_offsets(kSize, seed);
     const auto flickers = fit_joint(hidden_run(run, seed), joint_options({}));
     ASSERT_TRUE(flickers);
-    const WanderingEstimate found = wandering_of(*flickers);
+    const WanderingEstimate found = found_in(*flickers);
     flicker += found.any() && found.spectrum == SlowSpectrum::flicker ? 1 : 0;
     size += found.any() ? found.size.mean() / 6 : 0;
     run.hidden = wandering_offsets({.step_nT = kStep_nT}, seed);
     const auto walks = fit_joint(hidden_run(run, seed), joint_options({}));
     ASSERT_TRUE(walks);
-    walk += wandering_of(*walks).spectrum == SlowSpectrum::walk ? 1 : 0;
+    walk += found_in(*walks).spectrum == SlowSpectrum::walk ? 1 : 0;
   }
   EXPECT_EQ(flicker, 6);
   EXPECT_EQ(walk, 6);
@@ -229,15 +239,14 @@ TEST(CovarianceWithWandering, IsHonest) {
     const PoseTable table = hidden_run(run, seed);
     const auto fit = fit_joint(table, joint_options({}));
     ASSERT_TRUE(fit);
-    const auto covariance = covariance_with_wandering(*fit, wandering_of(*fit));
-    ASSERT_TRUE(covariance);
+    const Eigen::MatrixXd covariance = covariance_with(found_in(*fit), *fit);
     const testing::Rig truth = testing::table6_rig();
     for (int i = 0; i < kSensors; ++i) {
       const auto s = static_cast<std::size_t>(i);
       const sensor::ParameterVector error = fit->state.sensors[s].parameters() - truth[s].parameters();
       const auto square = [&](double by, int p) {
         const int slot = sensor::kSensorParameters * i + p;
-        return by * by / (*covariance)(slot, slot);
+        return by * by / covariance(slot, slot);
       };
       for (int axis = 0; axis < 3; ++axis, ++n) {
         const double at_end = run.hidden(table.poses.back(), i, axis, {});
@@ -260,11 +269,11 @@ TEST(CovarianceWithWandering, KeepsTheErrorOfFilledInFieldsAndTheCorrelationOfSa
   const auto found = fit_joint(table, joint_options({}));
   ASSERT_TRUE(found);
   JointFit fit = *found;
-  const WanderingEstimate wandering = wandering_of(fit);
-  const Eigen::MatrixXd plain = covariance_with_wandering(fit, wandering).value();
+  const WanderingEstimate wandering = found_in(fit);
+  const Eigen::MatrixXd plain = covariance_with(wandering, fit);
   fit.problem.filled_in_sd_nT = 5;
   for (JointPose& pose : fit.problem.poses) pose.filled_in = true;
-  const Eigen::MatrixXd error = covariance_with_wandering(fit, wandering).value() - plain;
+  const Eigen::MatrixXd error = covariance_with(wandering, fit) - plain;
   const double f_nT = fit.state.f_nT;
   for (int i = 0; i < kSensors; ++i) {
     const int slot = sensor::kSensorParameters * i + sensor::cx;
@@ -273,7 +282,7 @@ TEST(CovarianceWithWandering, KeepsTheErrorOfFilledInFieldsAndTheCorrelationOfSa
   }
   for (JointPose& pose : fit.problem.poses) pose.filled_in = false;
   fit.samples_per_effective = 4;
-  const Eigen::MatrixXd correlated = covariance_with_wandering(fit, wandering).value();
+  const Eigen::MatrixXd correlated = covariance_with(wandering, fit);
   for (int i = 0; i < kSensors; ++i) {
     const int slot = sensor::kSensorParameters * i + sensor::cx;
     EXPECT_GT(correlated(slot, slot), 1.05 * plain(slot, slot));
