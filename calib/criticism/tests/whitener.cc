@@ -118,22 +118,37 @@ Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& rows) const {
 }
 
 void Whitener::apply(const Eigen::MatrixXd& rows, Eigen::Ref<Eigen::MatrixXd> out) const {
-  const Eigen::Index left_rows = rows_per_pose();
   Walk walk(*this, rows.cols());
-  for (const Eigen::Index k : order_)
-    walk.next(rows.middleRows(k * pose_rows_, pose_rows_), out.middleRows(k * left_rows, left_rows));
+  in_pieces(out, [&](std::span<const Eigen::Index> poses, Eigen::MatrixXd& piece) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      walk.next(rows.middleRows(poses[i] * pose_rows_, pose_rows_), rows_of(i, piece));
+  });
 }
 
 void Whitener::apply(const RowSource& rows, Eigen::Ref<Eigen::MatrixXd> out) const {
-  constexpr std::size_t kAtATime = 64;
-  const Eigen::Index left_rows = rows_per_pose();
   Walk walk(*this, rows.columns);
+  in_pieces(out, [&](std::span<const Eigen::Index> poses, Eigen::MatrixXd& piece) {
+    const Eigen::MatrixXd given = rows.of(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      walk.next(given.middleRows(static_cast<Eigen::Index>(i) * pose_rows_, pose_rows_), rows_of(i, piece));
+  });
+}
+
+/// A column of `out` is long: row by row, each number would be written to a place in memory far from the
+/// last.
+void Whitener::in_pieces(Eigen::Ref<Eigen::MatrixXd> out, const auto& fill) const {
+  constexpr std::size_t kAtATime = 64;
+  Eigen::MatrixXd piece(static_cast<Eigen::Index>(kAtATime) * rows_per_pose(), out.cols());
   for (std::size_t from = 0; from < order_.size(); from += kAtATime) {
     const auto poses = std::span(order_).subspan(from, std::min(kAtATime, order_.size() - from));
-    const Eigen::MatrixXd piece = rows.of(poses);
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      walk.next(piece.middleRows(static_cast<Eigen::Index>(i) * pose_rows_, pose_rows_),
-                out.middleRows(poses[i] * left_rows, left_rows));
+    fill(poses, piece);
+    for (std::size_t i = 0, next = 0; i < poses.size(); i = next) {
+      next = i + 1;
+      while (next < poses.size() && poses[next] == poses[next - 1] + 1) ++next;
+      const Eigen::Index count = static_cast<Eigen::Index>(next - i) * rows_per_pose();
+      out.middleRows(poses[i] * rows_per_pose(), count) =
+          piece.middleRows(static_cast<Eigen::Index>(i) * rows_per_pose(), count);
+    }
   }
 }
 

@@ -76,6 +76,11 @@ class Whitener {
   [[nodiscard]] Eigen::Index coupled() const { return remembers() ? channels_ : 0; }
   /// Rows of a pose after the nuisances that are its alone are taken out.
   [[nodiscard]] Eigen::Index own_rows() const { return remembers() ? pose_rows_ : rows_per_pose(); }
+  /// Calls `fill(poses, piece)` with a few poses of order() at a time and copies the piece into `out`.
+  void in_pieces(Eigen::Ref<Eigen::MatrixXd> out, const auto& fill) const;
+  [[nodiscard]] auto rows_of(std::size_t i, Eigen::MatrixXd& piece) const {
+    return piece.middleRows(static_cast<Eigen::Index>(i) * rows_per_pose(), rows_per_pose());
+  }
   struct Step {
     Eigen::MatrixXd alone;        ///< takes out the nuisances of the pose; empty where the noise has a memory
     Eigen::VectorXd now, before;  ///< with a memory: factors of this pose's readings and the last one's
