@@ -25,6 +25,16 @@ RealKind off_by(double nT) {
                   });
 }
 
+/// A magnet that is dropped between pose `after` and the next.
+Change dropped(const std::function<std::size_t(Random&)>& after) {
+  return [after](Stage& stage, const PoseTable& plain, Random& random) {
+    const std::size_t pose = after(random);
+    const double at_s = (*plain.poses[pose - 1].t_s + *plain.poses[pose].t_s) / 2;
+    stage.scenario.magnets = {
+        {.at_s = at_s, .moment_Am2 = vector(random, 20), .at_m = vector(random, between(random, 2, 3.5))}};
+  };
+}
+
 RealKind apart_no_angles(const Change& apart) {
   RealKind out = rig_kind("apart-no-angles", "the same without angles", Must::refuse, {}, false, apart);
   out.make = [with_angles = out.make](std::uint64_t seed) {
@@ -85,11 +95,16 @@ std::vector<RealKind> disturbance_kinds() {
                }),
       rig_kind("magnet", "a magnet is dropped 2 to 3.5 m away before pose 80 and stays", Must::name,
                {"site.step", "site.gradient-drift", "site.dipole"}, false,
+               dropped([](Random&) { return std::size_t{79}; })),
+      rig_kind("magnet-late", "the same before one of the poses 111 to 140", Must::name,
+               {"site.step", "site.gradient-drift", "site.dipole"}, false,
+               dropped([](Random& random) { return std::size_t{110 + random() % 30}; })),
+      rig_kind("step-sensor", "the offsets of one sensor step by 1 to 20 nT, at any time", Must::name,
+               {"axis.offset.step"}, false,
                [](Stage& stage, const PoseTable& plain, Random& random) {
-                 const double at_s = (*plain.poses[78].t_s + *plain.poses[79].t_s) / 2;
-                 stage.scenario.magnets = {{.at_s = at_s,
-                                            .moment_Am2 = vector(random, 20),
-                                            .at_m = vector(random, between(random, 2, 3.5))}};
+                 const double at_s = between(random, *plain.poses[15].t_s, *plain.poses[141].t_s);
+                 const double nT = std::pow(20, between(random, 0, 1)) * sign(random);
+                 plant(stage, {"axis.offset.step", sensor_at_random(random), {nT, at_s}});
                }),
   };
 }
