@@ -172,12 +172,47 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
   return true;
 }
 
-/// Whether the evidence of a family is that of one pose; nothing where it is spread.
+/// Columns of the winning question of a family, its own combination of the axes.
+Eigen::MatrixXd winning_columns(const tests::ScoredFamily& family) {
+  return family.signatures[family.winner().variant].times(family.where().combine);
+}
+
+/// What the winning question of a family has of its score where the readings follow other columns, too.
+double score_beside(const Eigen::MatrixXd& columns, const tests::ScoredFamily& family,
+                    const tests::Residual& residual) {
+  const Eigen::MatrixXd Z = winning_columns(family);
+  const Eigen::VectorXd& r = residual.value();
+  const Eigen::VectorXd beside = r - columns * linear::least_squares(columns, r);
+  const Eigen::MatrixXd own = Z - columns * linear::least_squares(columns, Z);
+  return (own * linear::least_squares(own, beside)).squaredNorm();
+}
+
+/// One column for each row of a pose: beside them it is as if it were left out.
+Eigen::MatrixXd columns_of_pose(const tests::Criticism& c, Eigen::Index pose) {
+  const Eigen::Index rows = c.residual.whitener().pose_rows();
+  const tests::Signature own(c.residual, {.columns = rows, .of = [=](std::span<const Eigen::Index> poses) {
+                                            const auto n = static_cast<Eigen::Index>(poses.size());
+                                            Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n * rows, rows);
+                                            for (Eigen::Index i = 0; i < n; ++i)
+                                              if (poses[static_cast<std::size_t>(i)] == pose)
+                                                out.middleRows(i * rows, rows).setIdentity();
+                                            return out;
+                                          }});
+  return own.times(Eigen::MatrixXd::Identity(rows, rows));
+}
+
+/// Whether the evidence of a family is that of one pose; nothing where it is spread. Beside a memory of the
+/// noise that of a step lies in the first pose after it; half of it stays when that is left out.
 std::optional<EvidenceOfOnePose> evidence_of_one_pose(const fit::joint::JointFit& fit,
                                                       const tests::Criticism& c, std::size_t f) {
+  constexpr double kStays = 0.25;
   tests::Candidate weighed;
-  tests::weigh_poses(fit, c.evidence_by_pose(f), weighed);
+  const std::vector<double> by_pose = c.evidence_by_pose(f);
+  tests::weigh_poses(fit, by_pose, weighed);
   if (weighed.largest_pose <= kOnePose) return std::nullopt;
+  const auto pose = std::max_element(by_pose.begin(), by_pose.end()) - by_pose.begin();
+  const double without = score_beside(columns_of_pose(c, pose), c.families[f], c.residual);
+  if (without >= kStays * c.families[f].winner().S) return std::nullopt;
   return EvidenceOfOnePose{weighed.poses.front(), c.families[f].candidate_effect->name};
 }
 
@@ -190,11 +225,6 @@ bool accounts_for_all(const tests::Candidate& candidate, const tests::Criticism&
   return candidate.d * candidate.d >= kMost * criticism.residual.chi2();
 }
 
-/// Columns of the winning question of a family, its own combination of the axes.
-Eigen::MatrixXd winning_columns(const tests::ScoredFamily& family) {
-  return family.signatures[family.winner().variant].times(family.where().combine);
-}
-
 /// Most of the evidence of `other` is that of `leader`, which has much more: a look-alike of something that
 /// was not named because of its size, and no name of its own.
 bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& other,
@@ -202,12 +232,7 @@ bool lives_on(const tests::ScoredFamily& leader, const tests::ScoredFamily& othe
   constexpr double kDecisive = 25;   // in chi-square
   constexpr double kMostOfIt = 0.5;  // of its score, that falls away beside the leader
   if (leader.winner().S < other.winner().S + kDecisive) return false;
-  const Eigen::MatrixXd L = winning_columns(leader), Z = winning_columns(other);
-  const Eigen::VectorXd& r = residual.value();
-  const Eigen::VectorXd beside = r - L * linear::least_squares(L, r);
-  const Eigen::MatrixXd own = Z - L * linear::least_squares(L, Z);
-  const double left = (own * linear::least_squares(own, beside)).squaredNorm();
-  return left < (1 - kMostOfIt) * other.winner().S;
+  return score_beside(winning_columns(leader), other, residual) < (1 - kMostOfIt) * other.winner().S;
 }
 
 /// Rounds that found a law: those that went on with a dependence on temperature do not count.

@@ -218,15 +218,21 @@ const Round* ExplainReport::open_round() const {
 }
 
 /// A law that accounts for what the fit left out outranks leaving it out: with all readings in, the law
-/// leaves no more than the fit without them does.
+/// leaves no more than the fit without them does. Where it does not, a few may be wrong beside it, as is a
+/// pose during whose dwell the step came.
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
+  constexpr double kFew = 0.05;
   auto out = explained(table, options, fit::joint::JointOptions().most_left_out);
   if (!out || !may_be_a_law(*out->fit)) return out;
-  auto with_all = explained(table, options, 0);
-  const bool accounts =
-      with_all && (with_all->finding == Finding::explained || with_all->finding == Finding::ambiguous) &&
-      left_nT(*with_all) < kAsLittle * left_nT(*out);
-  return accounts ? with_all : out;
+  for (const double most_left_out : {0.0, kFew}) {
+    if (most_left_out >= out->fit->contradicting) break;
+    auto with_others = explained(table, options, most_left_out);
+    if (with_others &&
+        (with_others->finding == Finding::explained || with_others->finding == Finding::ambiguous) &&
+        left_nT(*with_others) < kAsLittle * left_nT(*out))
+      return with_others;
+  }
+  return out;
 }
 
 }  // namespace mgtd::calib::criticism::search

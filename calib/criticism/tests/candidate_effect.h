@@ -39,6 +39,8 @@ struct CandidateEffect {
   std::function<Result<effects::EffectPtr>(const Hypothesis*, const std::optional<double>& value)> make{};
   /// A value of the searched number between two others; empty where there is none. See scan_refinement.h.
   std::function<std::optional<double>(double lower, double upper)> between{};
+  /// Where the searched number is an instant of the run: every one that lies between two poses.
+  std::vector<double> instants{};
   /// A dipole at a place (site frame, m), with the searched number of one of the variants: coefficients
   /// moment, then shift. Empty for a law that has none. See dipole_search.h.
   std::function<Result<effects::EffectPtr>(const Eigen::Vector3d& place_S_m,

@@ -76,6 +76,20 @@ double largest_S(const std::vector<ScoredFamily>& families) {
   return out;
 }
 
+/// Beside a memory of the noise, or offsets that wander, steps are asked about between every two poses.
+void find_instants(Criticism& out) {
+  constexpr double kRemembers = 0.3;
+  const fit::joint::JointFit& fit = *out.tested;
+  const Whitener& whitener = out.residual.whitener();
+  if (whitener.rho() < kRemembers && !whitener.wanders()) return;
+  std::vector<ScoredFamily*> of_instants;
+  for (ScoredFamily& family : out.families)
+    if (!family.candidate_effect->instants.empty()) of_instants.push_back(&family);
+  linear::for_each_part(of_instants.size(), [&](std::size_t i) {
+    try_every_instant(fit.problem, fit.state, out.residual, out.noise.reference, *of_instants[i]);
+  });
+}
+
 /// Families that could still win with a better number. A dipole makes the gradient that is seen, once its
 /// place is known: it comes as near as site.gradient does. A dipole that came during the run is looked for
 /// where a step of the site is what stands out most.
@@ -124,6 +138,7 @@ Criticism tested(const fit::joint::JointFit& of, Residual residual, const Candid
     }
   }
   rate(before, seed, out);
+  find_instants(out);
   refine_alternatives(out);
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });

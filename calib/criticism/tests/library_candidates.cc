@@ -86,6 +86,8 @@ CandidateEffect candidate_effect_of(const effects::library::EffectFamily& family
     return effects::library::make(family, h == nullptr ? std::nullopt : where_of(*h), value, context);
   };
   out.between = between(family, context);
+  if (family.scan && family.scan->range == effects::library::Scan::Range::run)
+    out.instants = effects::library::run_gaps_h(context);
   out.dipole_at = dipole_of(family);
   return out;
 }

@@ -57,6 +57,24 @@ void refine(const fit::joint::JointProblem& problem, const fit::joint::JointStat
   family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
 }
 
+void try_every_instant(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                       const Residual& residual, const NoiseReference& noise, ScoredFamily& family) {
+  constexpr std::size_t kMost = 1000;
+  const std::vector<double> instants = family.candidate_effect->instants;
+  if (instants.size() > kMost) return;
+  CandidateEffect& wider = widened(family);
+  const std::size_t before = wider.variants.size();
+  for (const double instant : instants) {
+    if (std::find(wider.values.begin(), wider.values.end(), instant) != wider.values.end()) continue;
+    auto effect = wider.make(nullptr, instant);
+    if (!effect || *effect == nullptr) continue;
+    Signature signature(residual, effect_source(problem, state, *effect));
+    add_variant(instant, *std::move(effect), std::move(signature), noise, wider, family);
+  }
+  family.asked *= static_cast<double>(wider.variants.size()) / static_cast<double>(before);
+  family.calibrated = best_of(std::min(0.0, family.priced), family.asked);
+}
+
 void refine_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
                   const Residual& residual, const NoiseReference& noise, ScoredFamily& family) {
   if (!family.candidate_effect->dipole_at) return;

@@ -12,6 +12,13 @@ namespace mgtd::calib::criticism::tests {
 void refine(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
             const Residual& residual, const NoiseReference& noise, ScoredFamily& family);
 
+/// Tries every instant between two poses that was not tried, and counts them as so many more questions.
+/// Beside noise that remembers the pose before, a step shows between the two poses that it comes between, and
+/// beside them hardly at all. Nothing happens to a family without instants, nor in a run of thousands of
+/// poses.
+void try_every_instant(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
+                       const Residual& residual, const NoiseReference& noise, ScoredFamily& family);
+
 /// Adds the dipole at its best place to a family that has one. It is scored with moment and place as six
 /// numbers (dipole_search.h): every gradient is that of some dipole far away, and the sixth number must pay.
 void refine_place(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
