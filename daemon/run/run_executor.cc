@@ -21,8 +21,6 @@
 namespace mgtd::daemon::run {
 namespace {
 
-constexpr const char* kSuffix = ".mgtrun";
-
 /// "20261121T100000Z": sorts by time, names the file.
 std::string run_id_at(WallTime t) {
   std::string id = format_utc(t).substr(0, 19);
@@ -95,39 +93,30 @@ RunExecutor::RunExecutor(const config::Config& config, std::filesystem::path dir
                          store::CalibrationStore& store, store::Worker& worker, CurrentRun& run,
                          RunHooks hooks)
     : config_(config),
-      directory_(std::move(directory)),
+      files_(std::move(directory)),
       store_(store),
       worker_(worker),
       run_(run),
       hooks_(std::move(hooks)) {}
 
 /// Nothing for a file whose plan cannot be read.
-std::optional<RunExecutor::Interrupted> RunExecutor::resumable(const std::filesystem::path& path,
-                                                               const store::RunFile& file) const {
+std::optional<RunExecutor::Interrupted> RunExecutor::resumable(const store::RunFile& file) {
   const auto plan = plan_of(file);
   if (!plan) return std::nullopt;
-  return Interrupted{path, file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
+  return Interrupted{file.path(), file.header().run_id, static_cast<int>(file.pose_count().value_or(0)),
                      static_cast<int>(plan->poses.size())};
 }
 
 void RunExecutor::find_interrupted() {
-  std::error_code ignored;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(directory_, ignored)) {
-    if (entry.path().extension() == kSuffix) files.push_back(entry.path());
-  }
-  std::sort(files.rbegin(), files.rend());
-  for (const auto& path : files) {
-    const auto file = store::RunFile::open(path, store::Access::read_only);
-    if (!file) {
-      spdlog::warn("{}: {}", path.string(), file.error().text());
-      continue;
-    }
-    const auto state = file->state();
-    if (!state) continue;
-    if (state->state == RunState::failed && path == files.front()) failed_ = resumable(path, *file);
-    if (!is_active(state->state)) continue;
-    interrupted_ = resumable(path, *file);
+  const auto found = [](const store::RunFiles::Entry& run) -> std::optional<Interrupted> {
+    const auto file = store::RunFile::open(run.path, store::Access::read_only);
+    return file ? resumable(*file) : std::nullopt;
+  };
+  const auto runs = files_.last_first();
+  if (!runs.empty() && runs.front().state == RunState::failed) failed_ = found(runs.front());
+  for (const store::RunFiles::Entry& run : runs) {
+    if (!is_active(run.state)) continue;
+    interrupted_ = found(run);
     if (!interrupted_) continue;
     failed_.reset();
     spdlog::warn(
@@ -178,15 +167,15 @@ Result<void> RunExecutor::start(const RunRequest& request, Stamp now) {
   auto planned = plan(request);
   if (!planned) return tl::unexpected(planned.error());
   const std::string id = run_id_at(now.wall);
-  auto file = store::RunFile::create(directory_ / (id + kSuffix), {.run_id = id,
-                                                                   .rig = config_.rig_name,
-                                                                   .started_utc = now.wall,
-                                                                   .software = software(),
-                                                                   .config = config_.text,
-                                                                   .plan = to_json(*planned).dump(),
-                                                                   .seed = planned->options.seed,
-                                                                   .source = "measured",
-                                                                   .options = run_options(config_, request)});
+  auto file = files_.create({.run_id = id,
+                             .rig = config_.rig_name,
+                             .started_utc = now.wall,
+                             .software = software(),
+                             .config = config_.text,
+                             .plan = to_json(*planned).dump(),
+                             .seed = planned->options.seed,
+                             .source = "measured",
+                             .options = run_options(config_, request)});
   if (!file) return tl::unexpected(file.error());
   for (const std::string& effect : config_.effects) {
     if (auto put = file->append_model_step({now.wall, "mgtd configuration", "add", effect, "{}"}); !put)

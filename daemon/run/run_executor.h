@@ -18,6 +18,7 @@
 #include "daemon/run/solver.h"
 #include "daemon/store/calibration_store.h"
 #include "daemon/store/run_file.h"
+#include "daemon/store/run_files.h"
 #include "daemon/store/worker.h"
 #include "proto/journal_note.h"
 #include "proto/run_log.h"
@@ -47,7 +48,7 @@ class RunExecutor {
   RunExecutor(const config::Config& config, std::filesystem::path directory, store::CalibrationStore& store,
               store::Worker& worker, CurrentRun& run, RunHooks hooks);
 
-  /// Looks for a run that was under way when the daemon died.
+  /// Looks for a run that was under way when the daemon died, and for the last run, if that failed.
   void find_interrupted();
 
   [[nodiscard]] Result<plan::RunPlan> plan(const RunRequest& request) const;
@@ -83,8 +84,7 @@ class RunExecutor {
   };
 
   [[nodiscard]] RunConfig run_config(const std::string& run_id) const;
-  [[nodiscard]] std::optional<Interrupted> resumable(const std::filesystem::path& path,
-                                                     const store::RunFile& file) const;
+  [[nodiscard]] static std::optional<Interrupted> resumable(const store::RunFile& file);
   [[nodiscard]] Result<void> table_is_there() const;
   [[nodiscard]] Result<void> tells_tensor(const RunRequest& request) const;
   [[nodiscard]] Result<void> resume_interrupted(Stamp now);
@@ -125,7 +125,7 @@ class RunExecutor {
   void act(const Finish& action, Stamp);
 
   const config::Config& config_;
-  std::filesystem::path directory_;
+  store::RunFiles files_;
   store::CalibrationStore& store_;
   store::Worker& worker_;
   CurrentRun& run_;

@@ -177,7 +177,7 @@ void RunExecutor::act(const Finish& action, Stamp) {
   if (auto set = file_->set_state(action.state, action.message); !set)
     spdlog::error("run state: {}", set.error().text());
   failed_.reset();
-  if (action.state == RunState::failed) failed_ = resumable(file_->path(), *file_);
+  if (action.state == RunState::failed) failed_ = resumable(*file_);
 }
 
 }  // namespace mgtd::daemon::run

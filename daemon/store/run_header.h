@@ -28,7 +28,8 @@ struct RunOptions {
 [[nodiscard]] PerSensor<std::string> numbered_sensors(std::size_t sensors);
 
 struct RunHeader {
-  std::string run_id;  ///< made by the caller; also the stem of the file's name
+  std::string run_id;       ///< made by the caller; also the stem of the file's name
+  std::uint64_t number{0};  ///< of the runs of one folder (run_files.h); 0: none
   std::string rig;
   WallTime started_utc;  ///< origin of t_s
   std::string software;  ///< "mgtd 0.1.0"

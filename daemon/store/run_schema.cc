@@ -73,6 +73,7 @@ std::optional<calib::sensor::Geometry> places_from(const std::string& text) {
 
 Meta to_meta(const RunHeader& h) {
   Meta meta{{"run_id", h.run_id},
+            {"number", fmt::format("{}", h.number)},
             {"rig", h.rig},
             {"started_utc", format_utc(h.started_utc)},
             {"started_utc_ns", fmt::format("{}", h.started_utc.ns)},
@@ -108,6 +109,7 @@ std::optional<double> number_of(const Meta& meta, const std::string& key) {
 Result<RunHeader> from_meta(const Meta& meta, const std::string& file) {
   RunHeader h;
   h.run_id = text_of(meta, "run_id");
+  h.number = std::strtoull(text_of(meta, "number").c_str(), nullptr, 10);
   h.rig = text_of(meta, "rig");
   h.started_utc.ns = parse_integer(text_of(meta, "started_utc_ns")).value_or(0);
   h.software = text_of(meta, "software");

@@ -172,5 +172,19 @@ TEST(RunExecutor, ARunThatCannotBeginLeavesTheFailedOneToBeResumed) {
   EXPECT_TRUE(later.executor.request(Request::resume, held.now));
 }
 
+/// The clock that names the files may have been ahead during the run before.
+TEST(RunExecutor, TheLastRunIsTakenUpWhateverTheClockSaidBefore) {
+  HeldFit held;
+  held.executor.carry_out(Finish{RunState::done, "proposed"}, held.now);
+  const Stamp year_before{held.now.mono, WallTime{held.now.wall.ns - std::int64_t{365} * 86'400'000'000'000}};
+  Later later(held);
+  const auto begun = later.executor.start({}, year_before);
+  ASSERT_TRUE(begun) << begun.error().text();
+  later.executor.carry_out(Finish{RunState::failed, "s2 did not come back"}, year_before);
+  Later after_that(held);
+  EXPECT_EQ(after_that.executor.status(year_before.mono).state, RunState::failed);
+  EXPECT_EQ(after_that.executor.status(year_before.mono).run_id, later.executor.course().run_id);
+}
+
 }  // namespace
 }  // namespace mgtd::daemon::run
