@@ -2,10 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -16,12 +13,11 @@
 #include "tests/rig/fault.h"
 #include "tests/rig/fault_client.h"
 #include "tests/rig/operator.h"
-#include "tests/rig/pose_writer.h"
-#include "tests/rig/recording.h"
 #include "tests/rig/rig_server.h"
 #include "tests/rig/scenario_help.h"
 #include "tests/rig/seal.h"
-#include "tests/rig/simulated_table.h"
+#include "tests/rig/table_file.h"
+#include "tests/rig/text_file.h"
 
 namespace {
 
@@ -40,12 +36,11 @@ constexpr const char* kDescription =
   mgt-rig open truth.sealed                                      see whether you were right)";
 
 struct Arguments {
-  std::string scenario, rig = "table6", dir = "/tmp/mgt-rig", state, output, poses = "run157",
-                        tcp = "127.0.0.1:7450", seal;
+  std::string scenario, rig = "table6", dir = "/tmp/mgt-rig", state, tcp = "127.0.0.1:7450", seal;
   int hide{0};
-  bool samples{false}, poses_given{false};
   std::uint64_t seed{1};
-  double speed_up{1}, begin_s{0};
+  double speed_up{1};
+  TableFileOptions table;
   bool print_config{false};
   std::vector<std::string> words;
   std::vector<double> angles_deg;
@@ -65,17 +60,6 @@ struct Arguments {
   }
 };
 
-/// The whole file. Nothing when it cannot be read: the reason is on stderr.
-std::optional<std::string> text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text, piece(1U << 16U, '\0');
-  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())), in.gcount() > 0)
-    text.append(piece, 0, static_cast<std::size_t>(in.gcount()));
-  if (in.is_open() && !in.bad()) return text;
-  fmt::print(stderr, "mgt-rig: {} cannot be read: {}\n", path, std::strerror(errno));
-  return std::nullopt;
-}
-
 /// The scenario file, or a clean rig by name. Nothing when it has mistakes: they are on stderr.
 std::optional<Scenario> load(const Arguments& args) {
   std::string text =
@@ -83,7 +67,7 @@ std::optional<Scenario> load(const Arguments& args) {
   std::string file = "--rig";
   if (!args.scenario.empty()) {
     file = args.scenario;
-    auto content = text_of(file);
+    auto content = text_of_file(file);
     if (!content) return std::nullopt;
     text = *std::move(content);
   }
@@ -93,25 +77,14 @@ std::optional<Scenario> load(const Arguments& args) {
   return std::nullopt;
 }
 
-int write(const std::string& path, const std::string& content) {
-  if (path.empty() || path == "/dev/stdout") {  // opened anew it would begin at the start of its file
-    fmt::print("{}", content);
-    return 0;
-  }
-  std::ofstream out(path, std::ios::binary);
-  if (out << content << std::flush) return 0;
-  fmt::print(stderr, "mgt-rig: {} cannot be written\n", path);
-  return 2;
-}
-
 /// Whether a file that is to be written is one that is read; it says so.
 bool overwrites_input(const Arguments& args) {
-  if (!args.seal.empty() && args.seal == args.output) {
+  if (!args.seal.empty() && args.seal == args.table.output) {
     fmt::print(stderr, "mgt-rig: --seal and -o name one file: the table would overwrite the truth\n");
     return true;
   }
-  for (const std::string& to : {args.output, args.seal}) {
-    for (const std::string& from : {args.scenario, args.poses}) {
+  for (const std::string& to : {args.table.output, args.seal}) {
+    for (const std::string& from : {args.scenario, args.table.poses}) {
       std::error_code not_there;
       if (!std::filesystem::equivalent(to, from, not_there)) continue;
       fmt::print(stderr, "mgt-rig: {} is read by this command and would be overwritten: name another file\n",
@@ -127,7 +100,7 @@ bool seal_truth(const std::string& path, const Scenario& s) {
   std::random_device device;
   std::mt19937_64 random((std::uint64_t{device()} << 32U) ^ device());
   const Seal sealed = seal(truth_json(s), random);
-  if (write(path, sealed.content) != 0) return false;
+  if (write_file(path, sealed.content) != 0) return false;
   fmt::print(stderr, "sealed in {}: sha256 {}\n", path, sealed.sha256);
   return true;
 }
@@ -144,64 +117,9 @@ std::optional<Scenario> prepared(const Arguments& args, Scenario s) {
   return s;
 }
 
-DesignOptions options_of(const std::string& poses, const Scenario& s) {
-  DesignOptions out{.tilt_limit_deg = s.tilt_limit_deg};
-  if (poses == "octant157") {
-    out.standard = false;
-    out.random = 157;
-    out.octant = s.field_direction();
-  }
-  return out;
-}
-
-/// A recording or a cage says itself which rows there are.
-int own_rows(const Arguments& args, Scenario s) {
-  if (args.poses_given) {
-    fmt::print(stderr, "mgt-rig: {} says itself which rows there are; leave --poses out\n",
-               s.recording ? "[recording]" : "[cage]");
-    return 2;
-  }
-  if (s.recording) return write(args.output, pose_table_csv(simulated_recording(std::move(s))));
-  const Design design = cage_fields(*s.cage, s.seed);
-  const std::uint64_t seed = s.seed;
-  return write(args.output,
-               pose_table_csv(simulated_survey(std::move(s), design, seed,
-                                               args.samples ? Sampling::samples : Sampling::means)));
-}
-
-int table(const Arguments& args, Scenario s) {
-  if (s.recording || s.cage) return own_rows(args, std::move(s));
-  const bool grid = args.poses == "grid5832";
-  if (args.poses == "octant157" && s.tilt_limit_deg < 90) {
-    fmt::print(stderr, "mgt-rig: octant157 tilts the array by up to 90 degrees; tilt_limit_deg = {}\n",
-               s.tilt_limit_deg);
-    return 2;
-  }
-  if (grid) s.table_accuracy_deg = 0;
-  const bool named = grid || args.poses == "run157" || args.poses == "octant157";
-  ListedDesign listed;
-  if (!named) {
-    const auto csv = text_of(args.poses);
-    if (!csv) return 2;
-    listed = listed_design(*csv);
-    if (!listed.error.empty()) {
-      fmt::print(stderr, "mgt-rig: {}: {}\n", args.poses, listed.error);
-      return 2;
-    }
-  }
-  Design design = !named ? std::move(listed.design)
-                  : grid ? grid_of_5832()
-                         : run_of_157(options_of(args.poses, s), s.seed);
-  design.begin_s = args.begin_s;
-  const std::uint64_t seed = s.seed;
-  return write(args.output,
-               pose_table_csv(simulated_survey(std::move(s), design, seed,
-                                               args.samples ? Sampling::samples : Sampling::means)));
-}
-
 /// Only what stands behind a serial port can be run.
 int run_rig(const Arguments& args, const Scenario& s) {
-  if (args.print_config) return write("", args.config(s));
+  if (args.print_config) return write_file("", args.config(s));
   if (s.reference || s.cage || s.recording) {
     fmt::print(stderr,
                "mgt-rig: [{}] is of a table and has no serial port; write one with: mgt-rig table "
@@ -217,10 +135,10 @@ int run_rig(const Arguments& args, const Scenario& s) {
 }
 
 int open(const Arguments& args) {
-  const auto sealed = text_of(args.seal);
+  const auto sealed = text_of_file(args.seal);
   if (!sealed) return 2;
   const auto truth = open_seal(*sealed);
-  if (truth) return write("", truth->dump(1) + "\n");
+  if (truth) return write_file("", truth->dump(1) + "\n");
   fmt::print(stderr, "mgt-rig: {}: {}\n", args.seal, truth.error());
   return 1;
 }
@@ -335,26 +253,27 @@ void add_commands(CLI::App& app, Arguments& args) {
   add_place(run, args);
   run->add_flag("--print-config", args.print_config, "print the mgtd.toml for this rig instead");
   add_place(add_scenario(app, "config", "print the mgtd.toml for this rig", args,
-                         [](const Arguments& a, const Scenario& s) { return write("", a.config(s)); }),
+                         [](const Arguments& a, const Scenario& s) { return write_file("", a.config(s)); }),
             args);
   CLI::App* const poses = add_scenario(app, "table", "write a pose table straight from the physics", args,
                                        [](const Arguments& a, const Scenario& s) {
                                          auto rig = prepared(a, s);
-                                         return rig ? table(a, *std::move(rig)) : 2;
+                                         return rig ? write_table_file(a.table, *std::move(rig)) : 2;
                                        });
   add_game(poses, args);
-  poses->add_flag("--samples", args.samples, "every sample instead of the distribution of the means");
+  poses->add_flag("--samples", args.table.samples, "every sample instead of the distribution of the means");
   poses
-      ->add_option("--poses", args.poses,
+      ->add_option("--poses", args.table.poses,
                    "run157 (36 standard and 121 random poses), octant157 (the field in one octant only), "
                    "grid5832, or a list of poses (CSV), as mgt next -o writes it")
-      ->each([&args](const std::string&) { args.poses_given = true; })
+      ->each([&args](const std::string&) { args.table.poses_given = true; })
       ->capture_default_str();
-  poses->add_option("--begin", args.begin_s, "time of the rig's world at which the run starts, s (0)")
+  poses->add_option("--begin", args.table.begin_s, "time of the rig's world at which the run starts, s (0)")
       ->check(CLI::Range(0.0, 1e7));
-  poses->add_option("-o,--output", args.output, "file; standard output when absent");
-  add_scenario(app, "truth", "print what the rig really is, as JSON", args,
-               [](const Arguments&, const Scenario& s) { return write("", truth_json(s).dump(1) + "\n"); });
+  poses->add_option("-o,--output", args.table.output, "file; standard output when absent");
+  add_scenario(
+      app, "truth", "print what the rig really is, as JSON", args,
+      [](const Arguments&, const Scenario& s) { return write_file("", truth_json(s).dump(1) + "\n"); });
   add(app, "open", "show the truth in a sealed file", args, &open)
       ->add_option("FILE", args.seal, "sealed file")
       ->required();
