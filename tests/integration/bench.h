@@ -86,6 +86,12 @@ inline const std::vector<std::string> kShortRun{"run",           "start", "--ste
                                                 "--random",      "16",    "--revisits",   "4",
                                                 "--dwell-short", "1",     "--dwell-long", "2"};
 
+/// A command that begins a run and leaves it to the daemon.
+inline std::vector<std::string> detached(std::vector<std::string> start) {
+  start.emplace_back("--detach");
+  return start;
+}
+
 /// The raw journals of its daemon, in the order they were written.
 inline std::vector<std::string> journals(const Bench& bench) {
   std::vector<std::string> out;

@@ -50,9 +50,7 @@ TEST(Identity, ExchangedPlugsStopCalibratedOutputAndTheNextRun) {
   EXPECT_THAT(next_samples(bench), ::testing::Each(" uncalibrated identity"));
   EXPECT_THAT(bench.mgt({"status"}).out, HasSubstr("swap the plugs back"));
 
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
-  static_cast<void>(bench.mgt(start));
+  static_cast<void>(bench.mgt(detached(kShortRun)));
   ASSERT_TRUE(eventually([&] {
     const json now = bench.ask({"status"}).at("run");
     return now.at("state") == "paused" && now.at("goes_on") == false;

@@ -70,9 +70,7 @@ bool go_on(Bench& bench, int& runs, std::set<int>& known, std::unique_ptr<ChildP
   }
   known.clear();
   ++runs;
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
-  return bench.mgt(start).exit_code == 0;
+  return bench.mgt(detached(kShortRun)).exit_code == 0;
 }
 
 TEST(Kill, AtRandomMomentsLosesNothing) {

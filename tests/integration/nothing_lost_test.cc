@@ -192,9 +192,7 @@ TEST(NothingLost, OnAFullDiskTheRunPausesAndGoesOnWhenThereIsRoom) {
   const SmallDisk disk(bench.dir() / "runs", "size=128m");
   if (!disk.mounted()) GTEST_SKIP() << "mounting is not allowed here";
   bench.start_daemon();
-  std::vector<std::string> detached = kShortRun;
-  detached.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  ASSERT_EQ(bench.mgt(detached(kShortRun)).exit_code, 0);
   const auto run = [&] { return bench.ask({"run", "status"}); };
   ASSERT_TRUE(eventually([&] { return run().value("pose", 0) >= 3; }));
   disk.fill();

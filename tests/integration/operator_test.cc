@@ -45,9 +45,7 @@ TEST(Operator, SwappedCablesAreFoundWithAMagnet) {
 TEST(Operator, ARunIsNotResumedDuringAMagnetTest) {
   Bench bench;
   bench.start_daemon();
-  std::vector<std::string> detached = kShortRun;
-  detached.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  ASSERT_EQ(bench.mgt(detached(kShortRun)).exit_code, 0);
   bench.daemon().signal(SIGKILL);
   bench.start_daemon();
   ASSERT_EQ(bench.ask({"run", "status"}).at("state"), "interrupted");
@@ -107,9 +105,7 @@ TEST(Operator, WhileOneHasControlOthersLookAndMayStop) {
   holder.signal(SIGINT);
   ASSERT_TRUE(holder.wait());
   ASSERT_TRUE(eventually([&] { return bench.ask({"control", "show"}).at("holder").is_null(); }));
-  std::vector<std::string> detached = kShortRun;
-  detached.emplace_back("--detach");
-  EXPECT_EQ(bench.mgt(detached).exit_code, 0);
+  EXPECT_EQ(bench.mgt(detached(kShortRun)).exit_code, 0);
 }
 
 TEST(Operator, TheWrongDeviceOnAPortIsNamed) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real programs against each other: mgt-rig on ptys, mgtd on its ports, mgt as the operator.
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -67,9 +64,7 @@ TEST(Programs, ARunEndsWhenTheTensorIsKnownWellEnough) {
 TEST(Programs, AKilledDaemonOffersTheRunAndGoesOnAtTheNextPose) {
   Bench bench;
   bench.start_daemon();
-  std::vector<std::string> detached = kShortRun;
-  detached.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  ASSERT_EQ(bench.mgt(detached(kShortRun)).exit_code, 0);
   int stored = 0;
   ASSERT_TRUE(eventually([&] {
     const json run = bench.ask({"run", "status"});
@@ -196,8 +191,7 @@ void measures(Bench& bench, const std::vector<std::string>& begin, int poses) {
 TEST(Programs, ARunThatFailedIsTakenUpWhereItStopped) {
   Bench bench("60");
   bench.start_daemon();
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
+  const std::vector<std::string> start = detached(kShortRun);
   const std::vector<std::string> resume{"run", "resume", "--detach"};
   const auto fails = [&](const std::vector<std::string>& begin, int poses) {
     measures(bench, begin, poses);
@@ -240,104 +234,12 @@ TEST(Programs, AbortChangesNothingAndASecondDaemonIsTurnedAway) {
   const Finished second = run_program({program("mgtd"), "--config", bench.config_path()}, bench.dir().path());
   EXPECT_NE(second.exit_code, 0);
   EXPECT_NE(second.err.find("is in use by mgtd with pid"), std::string::npos) << second.err;
-  std::vector<std::string> detached = kShortRun;
-  detached.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(detached).exit_code, 0);
+  ASSERT_EQ(bench.mgt(detached(kShortRun)).exit_code, 0);
   ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("pose", 0) >= 1; }));
   EXPECT_EQ(bench.mgt({"run", "abort"}).exit_code, 0);
   ASSERT_TRUE(eventually([&] { return bench.ask({"run", "status"}).value("state", "") == "aborted"; }));
   EXPECT_TRUE(bench.ask({"calibrations", "list"}).at("calibrations").empty());
   EXPECT_EQ(bench.mgt({"run", "pause"}).exit_code, 1);
-}
-
-/// A table of one axis: the array is mounted in five ways and the first once more, by a scripted operator who
-/// misreads the scale once.
-TEST(Programs, AOneAxisTableIsCalibratedWithMountingsByHand) {
-  Bench bench("30", "[rig]\nname = \"one axis\"\nparameters = \"table6\"\n[table]\nhands = \"mount\"\n");
-  bench.start_daemon();
-  std::vector<std::string> start = kShortRun;
-  start[5] = "36";
-  start.emplace_back("--detach");
-  const Finished started = bench.mgt(start);
-  ASSERT_EQ(started.exit_code, 0) << started.err;
-  const Finished hands = run_program({program("mgt-rig"), "operate", bench.dir() / "ports", "--control",
-                                      bench.dir() / "control.sock", "--blunder", "3"},
-                                     bench.dir().path(), std::chrono::seconds(300));
-  EXPECT_EQ(hands.exit_code, 0) << hands.out << hands.err << bench.daemon().err();
-  EXPECT_THAT(hands.out, HasSubstr("was asked for"));
-  EXPECT_THAT(hands.out, HasSubstr("the field turned by"));
-  const json run = bench.ask({"run", "status"});
-  EXPECT_EQ(run.at("state"), "done") << run.dump();
-  EXPECT_EQ(run.at("pose"), 54);
-}
-
-TEST(Programs, ATableTurnedByHandIsCalibratedFromWhatItsScalesSay) {
-  Bench bench("30", "[rig]\nname = \"by hand\"\nparameters = \"table6\"\n[table]\nhands = \"table\"\n");
-  bench.start_daemon();
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(start).exit_code, 0);
-  const Finished hands = run_program(
-      {program("mgt-rig"), "operate", bench.dir() / "ports", "--control", bench.dir() / "control.sock"},
-      bench.dir().path(), std::chrono::seconds(300));
-  EXPECT_EQ(hands.exit_code, 0) << hands.out << hands.err << bench.daemon().err();
-  EXPECT_EQ(bench.ask({"run", "status"}).at("pose"), 34);
-}
-
-/// Somebody waits at the question and leaves: no line has to be entered first.
-TEST(Programs, CtrlCLeavesTheQuestionOfARunByHand) {
-  Bench bench("30", "[rig]\nname = \"by hand\"\nparameters = \"table6\"\n[table]\nhands = \"table\"\n");
-  bench.start_daemon();
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(start).exit_code, 0);
-  const std::string keyboard = bench.dir() / "keyboard";
-  ASSERT_EQ(::mkfifo(keyboard.c_str(), 0600), 0);
-  const int hand = ::open(keyboard.c_str(), O_RDWR | O_CLOEXEC);
-  ASSERT_GE(hand, 0);
-  ChildProcess follow({"/bin/sh", "-c", "exec \"$0\" --socket \"$1\" run follow < \"$2\"", program("mgt"),
-                       bench.dir() / "control.sock", keyboard},
-                      bench.dir().path(), "follow");
-  ASSERT_TRUE(eventually([&] { return follow.err().find("azimuth") != std::string::npos; })) << follow.err();
-  follow.signal(SIGINT);
-  const auto ended = follow.wait();
-  ::close(hand);
-  ASSERT_TRUE(ended);
-  EXPECT_EQ(ended->exit_code, 0) << ended->err;
-  EXPECT_THAT(ended->err, HasSubstr("the run goes on"));
-  EXPECT_EQ(bench.ask({"run", "status"}).at("pose"), 0);
-}
-
-/// Somebody else has answered meanwhile: the entry is not taken for the next pose, and that is asked for.
-TEST(Programs, AQuestionThatWasAnsweredElsewhereIsAskedNoLonger) {
-  Bench bench("30", "[rig]\nname = \"by hand\"\nparameters = \"table6\"\n[table]\nhands = \"table\"\n");
-  bench.start_daemon();
-  std::vector<std::string> start = kShortRun;
-  start.emplace_back("--detach");
-  ASSERT_EQ(bench.mgt(start).exit_code, 0);
-  const std::string keyboard = bench.dir() / "keyboard";
-  ASSERT_EQ(::mkfifo(keyboard.c_str(), 0600), 0);
-  const int hand = ::open(keyboard.c_str(), O_RDWR | O_CLOEXEC);
-  ASSERT_GE(hand, 0);
-  const ChildProcess follow({"/bin/sh", "-c", "exec \"$0\" --socket \"$1\" run follow < \"$2\"",
-                             program("mgt"), bench.dir() / "control.sock", keyboard},
-                            bench.dir().path(), "follow");
-  const auto shows = [&](const std::string& text) {
-    return eventually([&] { return follow.err().find(text) != std::string::npos; });
-  };
-  ASSERT_TRUE(shows("pose 1 of 34: turn")) << follow.err();
-  const json target = bench.ask({"run", "status"}).at("prompt").at("target");
-  std::vector<std::string> enter{"run", "enter"};
-  for (const char* axis : {"azimuth_deg", "pitch_deg", "roll_deg"}) enter.push_back(target.at(axis).dump());
-  ASSERT_EQ(bench.mgt(enter).exit_code, 0);
-  ASSERT_TRUE(eventually([&] {
-    const json prompt = bench.ask({"run", "status"}).at("prompt");
-    return prompt.is_object() && prompt.at("pose") == 2;
-  }));
-  ASSERT_EQ(::write(hand, "0 0 0\n", 6), 6);
-  EXPECT_TRUE(shows("that answers another question")) << follow.err();
-  EXPECT_TRUE(shows("pose 2 of 34: turn the table to")) << follow.err();
-  ::close(hand);
 }
 
 TEST(Programs, BadInputIsNamedAndNothingIsWritten) {

@@ -68,6 +68,20 @@ daemon::plan::RunPlan mount_plan() {
 
 bool to_prompt(RunBench& bench, double limit_s = 600) { return bench.run_to(RunState::asking, limit_s); }
 
+/// The operator answers the next question. Whether so many poses are stored then.
+bool measured(RunBench& bench, Operator& hands, std::size_t poses) {
+  if (!to_prompt(bench)) return false;
+  hands.serve(bench);
+  return bench.run(600, [&] { return bench.stored.size() == poses; });
+}
+
+/// The operator takes a pose back, and the disk does not drop it.
+bool redo_on_a_full_disk(RunBench& bench) {
+  bench.disk_full = true;
+  bench.send(daemon::run::Request::redo);
+  return bench.run_to(RunState::paused);
+}
+
 TEST(RunByHand, TheEnteredAngleIsStoredAndNotTheTarget) {
   const daemon::plan::RunPlan plan = hand_plan(12);
   RunBench bench(plan, hand_config());
@@ -159,11 +173,7 @@ TEST(RunByHand, TheSameEntryTwiceIsTheOperatorsWord) {
 TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  for (int k = 0; k < 3; ++k) {
-    ASSERT_TRUE(to_prompt(bench));
-    hands.serve(bench);
-    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == static_cast<std::size_t>(k) + 1; }));
-  }
+  for (std::size_t k = 1; k <= 3; ++k) ASSERT_TRUE(measured(bench, hands, k));
   ASSERT_TRUE(to_prompt(bench));
   ASSERT_EQ(bench.status->prompt->pose, 4);
   bench.send(daemon::run::Request::redo);
@@ -174,8 +184,7 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
   const auto twice = bench.fsm.possible(daemon::run::Request::redo);
   ASSERT_FALSE(twice);
   EXPECT_NE(twice.error().message.find("asked for again already"), std::string::npos) << twice.error().text();
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
+  ASSERT_TRUE(measured(bench, hands, 3));
   EXPECT_EQ(bench.stored.back().number, 3);
 }
 
@@ -183,15 +192,9 @@ TEST(RunByHand, RedoAsksForTheLastPoseAgainAndDropsIt) {
 TEST(RunByHand, APoseThatTheDiskDoesNotDropPausesTheRun) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  for (std::size_t k = 1; k <= 3; ++k) {
-    ASSERT_TRUE(to_prompt(bench));
-    hands.serve(bench);
-    ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == k; }));
-  }
+  for (std::size_t k = 1; k <= 3; ++k) ASSERT_TRUE(measured(bench, hands, k));
   ASSERT_TRUE(to_prompt(bench));
-  bench.disk_full = true;
-  bench.send(daemon::run::Request::redo);
-  ASSERT_TRUE(bench.run_to(RunState::paused));
+  ASSERT_TRUE(redo_on_a_full_disk(bench));
   EXPECT_THAT(bench.status->message, HasSubstr("pose 3 is to be measured again but could not be taken out"));
   EXPECT_THAT(bench.status->message, HasSubstr("free some space"));
   bench.send(daemon::run::Request::finish);
@@ -207,12 +210,8 @@ TEST(RunByHand, APoseThatTheDiskDoesNotDropPausesTheRun) {
 TEST(RunByHand, AnAbortDropsWhatAFullDiskKept) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  ASSERT_TRUE(to_prompt(bench));
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
-  bench.disk_full = true;
-  bench.send(daemon::run::Request::redo);
-  ASSERT_TRUE(bench.run_to(RunState::paused));
+  ASSERT_TRUE(measured(bench, hands, 1));
+  ASSERT_TRUE(redo_on_a_full_disk(bench));
   bench.disk_full = false;
   bench.send(daemon::run::Request::abort);
   ASSERT_TRUE(bench.run(600));
@@ -223,28 +222,21 @@ TEST(RunByHand, AnAbortDropsWhatAFullDiskKept) {
 TEST(RunByHand, APoseThatTheDiskDropsLaterIsMeasuredAgain) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  ASSERT_TRUE(to_prompt(bench));
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
-  bench.disk_full = true;
-  bench.send(daemon::run::Request::redo);
-  ASSERT_TRUE(bench.run_to(RunState::paused));
+  ASSERT_TRUE(measured(bench, hands, 1));
+  ASSERT_TRUE(redo_on_a_full_disk(bench));
   bench.disk_full = false;
   bench.send(daemon::run::Request::resume);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_TRUE(bench.stored.empty());
   EXPECT_EQ(bench.status->prompt->pose, 1);
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  ASSERT_TRUE(measured(bench, hands, 1));
 }
 
 /// The last entry is that of the pose under way, which the pause forgot: the pose before stays.
 TEST(RunByHand, RedoAfterAPauseAsksForThePoseUnderWayAgain) {
   RunBench bench(hand_plan(12), hand_config());
   Operator hands;
-  ASSERT_TRUE(to_prompt(bench));
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 1; }));
+  ASSERT_TRUE(measured(bench, hands, 1));
   ASSERT_TRUE(to_prompt(bench));
   hands.serve(bench);
   ASSERT_FALSE(bench.status->prompt.has_value()) << "pose 2 is being measured";
@@ -317,16 +309,13 @@ TEST(RunByHand, RedoOfAMountingMeasuresItsPosesAgain) {
   config.limits.pitch = config.limits.roll = {};
   RunBench bench(mount_plan(), config);
   Operator hands;
-  ASSERT_TRUE(to_prompt(bench));
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
+  ASSERT_TRUE(measured(bench, hands, 3));
   ASSERT_TRUE(bench.run_to(RunState::moving));
   bench.send(daemon::run::Request::redo);
   ASSERT_TRUE(to_prompt(bench));
   EXPECT_EQ(bench.status->prompt->mount, 1);
   EXPECT_TRUE(bench.stored.empty());
-  hands.serve(bench);
-  ASSERT_TRUE(bench.run(600, [&] { return bench.stored.size() == 3; }));
+  ASSERT_TRUE(measured(bench, hands, 3));
 }
 
 TEST(RunByHand, AfterARestartTheMountingIsAskedForAgain) {
