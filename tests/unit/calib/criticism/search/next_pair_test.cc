@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "calib/effects/effect_spec.h"
 #include "calib/report/next_report.h"
 #include "tests/unit/calib/criticism/hidden.h"
 
@@ -69,6 +70,25 @@ TEST(NextPair, AQuestionThatALaterRoundLeavesOpenIsAskedToo) {
   EXPECT_EQ(next->effect, explained->open_round()->added.spec);
   EXPECT_NEAR(next->p_right_before, 0.5, 1e-3) << "the drift is in the model of the question";
   EXPECT_NEAR(explained->next.front().p_right_before, next->p_right_before, 1e-3);
+}
+
+/// A memory of the cores where the way of the table is not known, and what other pairs of sources have
+/// besides, are no alternatives of the winner: the round alone says that they are possible.
+TEST(NextPair, WhatTheRoundAloneLeavesOpenIsAsked) {
+  const Hidden square = [](const Pose&, int i, int a, const Eigen::Vector3d& v) {
+    return i == 1 && a == 0 ? 6 * std::pow(v[0] / 5e4, 2) : 0.0;
+  };
+  const PoseTable table = hidden_run({.hidden = square}, 4);
+  auto explained = criticism::search::explain(table, {});
+  ASSERT_TRUE(explained) << explained.error().text();
+  ASSERT_FALSE(explained->rounds.empty());
+  for (const char* other : {"axis.hysteresis", "site.dipole"}) {
+    explained->rounds.front().possible = {other};
+    const auto next = criticism::search::next_after(*explained, table, {}, std::nullopt);
+    ASSERT_TRUE(next) << next.error().text();
+    EXPECT_EQ(next->effect, explained->rounds.front().added.spec);
+    EXPECT_EQ(effects::family_name(next->alternative), other);
+  }
 }
 
 TEST(NextPair, APairThatIsAskedAboutAndTheVerdictsOwnGiveOneAnswer) {
