@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib/effects/added_effects.h"
 #include "calib/effects/effect_spec.h"
 #include "calib/effects/library/effect_family.h"
 
@@ -40,21 +41,12 @@ bool can_be_compared(const effects::Effect& effect) {
   return effects::library::find_family(name) != nullptr && name != "site.dipole" && name != "site.step";
 }
 
-/// What a search has added to a model; what it replaced is not in `described` any more.
-Effects added(const Effects& described, const Effects& given) {
-  const std::vector<std::string> before = effects::specs_of(given);
-  Effects out;
-  for (const effects::EffectPtr& effect : described)
-    if (std::find(before.begin(), before.end(), effect->spec()) == before.end()) out.push_back(effect);
-  return out;
-}
-
 }  // namespace
 
 std::optional<RemainingLaw> law_instead(const PoseTable& table, const DiscoverOptions& options,
                                         const Effects& described) {
   const Effects& given = options.fit.effects;
-  const Effects named = added(described, given);
+  const Effects named = effects::added_effects(described, given);
   if (named.empty() || named.size() + given.size() != described.size()) return std::nullopt;
   RemainingLaw out{.found = discover_beside(table, options, given), .model = given};
   if (!out.found || !out.found->accounts_for_everything()) return std::nullopt;

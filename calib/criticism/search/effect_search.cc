@@ -15,6 +15,7 @@
 #include "calib/criticism/tests/candidate.h"
 #include "calib/criticism/tests/judgement.h"
 #include "calib/design/next_measurement.h"
+#include "calib/effects/added_effects.h"
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/qr.h"
 
@@ -35,14 +36,6 @@ void keep_memory_possible(const EffectSearch& search, const tests::Criticism& c,
     if (std::find(round.possible.begin(), round.possible.end(), kMemory) == round.possible.end())
       round.possible.emplace_back(kMemory);
   }
-}
-
-/// How many of the effects that were given are still there; they stand first.
-std::size_t kept(const std::vector<effects::EffectPtr>& given, const std::vector<effects::EffectPtr>& model) {
-  std::size_t out = 0;
-  for (const effects::EffectPtr& effect : model)
-    out += std::find(given.begin(), given.end(), effect) != given.end() ? 1U : 0U;
-  return out;
 }
 
 /// A start for a wider model: coefficients that it shares with the narrower one as they were, the others
@@ -158,7 +151,8 @@ bool add(EffectSearch& search, std::size_t f, ExplainReport& report, bool first_
     search.failed.insert(round.added.effect);
     return false;
   }
-  refine_nonlinear_parameters(search.table, kept(search.given, wider.effects), wider, *refit);
+  const std::size_t given = wider.effects.size() - effects::added_effects(wider.effects, search.given).size();
+  refine_nonlinear_parameters(search.table, given, wider, *refit);
   const auto again = second_look(search.table, search.joint, search.criticism, f, round.added.alternatives,
                                  search.fit.noise_inflation, *refit, search.seed, search.looks);
   if (again && again->better && first_choice)

@@ -5,6 +5,7 @@
 
 #include "calib/criticism/search/model_stage.h"
 #include "calib/criticism/search/prune.h"
+#include "calib/effects/added_effects.h"
 #include "calib/fit/joint/cross_validation.h"
 #include "calib/fit/joint/joint_report.h"
 #include "calib/fit/joint/pose_residuals.h"
@@ -21,7 +22,9 @@ void prune_unless_worse(const PoseTable& table, const fit::FitOptions& options,
   tidy.effects = best.effects;
   tidy.noise_inflation = last.noise_inflation;
   fit::joint::JointFit fit = last;
-  prune(table, options.effects.size(), tidy, fit);
+  const std::size_t given =
+      best.effects.size() - effects::added_effects(best.effects, options.effects).size();
+  prune(table, given, tidy, fit);
   const auto before = fit::joint::left_out_nT(last), after = fit::joint::left_out_nT(fit);
   if (before && (!after || *after > kHeldOutVeto * *before)) return;
   const auto residual_nT = [](const fit::joint::JointFit& f) {

@@ -12,6 +12,7 @@
 #include "calib/criticism/tests/dipole_search.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/scan_refinement.h"
+#include "calib/effects/added_effects.h"
 
 namespace mgtd::calib::criticism::search {
 namespace {
@@ -140,13 +141,11 @@ bool fit_with(const EffectSearch& search, const fit::joint::JointFit& base,
 /// sensors' parameters, where the fit has something in the place of the other; both places at once are
 /// searched about parameters that two dipoles have bent.
 std::optional<SitePair> with_second(const EffectSearch& search, const fit::joint::JointFit& known) {
-  const auto& effects = known.problem.effects;
-  const std::vector<std::string> given = effects::specs_of(search.given);
-  const auto dipole = std::find_if(effects.begin(), effects.end(), [&](const effects::EffectPtr& effect) {
-    return effect->name() == kDipole && std::find(given.begin(), given.end(), effect->spec()) == given.end();
-  });
+  const std::vector<effects::EffectPtr> added = effects::added_effects(known.problem.effects, search.given);
+  const auto dipole = std::find_if(
+      added.begin(), added.end(), [](const effects::EffectPtr& effect) { return effect->name() == kDipole; });
   const tests::CandidateEffect* const family = candidate(search, kDipole);
-  if (dipole == effects.end() || family == nullptr) return std::nullopt;
+  if (dipole == added.end() || family == nullptr) return std::nullopt;
   const auto narrow = narrow_model(search.table, given_and(search, {*dipole}), known);
   if (!narrow) return std::nullopt;
   const Point point(narrow->problem, narrow->state);
