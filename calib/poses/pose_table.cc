@@ -54,9 +54,11 @@ constexpr std::array<std::string_view, 3> kReference{"ref_x_nT", "ref_y_nT", "re
 /// Reads line by line; knows where it is for every complaint.
 class Reader {
  public:
-  /// `sensors`: of the array for which poses are planned; a measured table tells its own.
-  Reader(std::string_view text, std::string_view file, Rows rows, std::size_t sensors)
-      : text_(text), file_(file), rows_(rows), sensors_(sensors) {
+  /// `sensors`: of the array for which poses are planned; a measured table tells its own. `map`: the file
+  /// that names the columns of an imported table.
+  Reader(std::string_view text, std::string_view file, Rows rows, std::size_t sensors,
+         std::string_view map = {})
+      : text_(text), file_(file), map_(map), rows_(rows), sensors_(sensors) {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
   [[nodiscard]] Result<PoseTable> read();
@@ -78,9 +80,13 @@ class Reader {
   Result<void> read_names(Pose& pose, const std::vector<TableCell>& cells);
   [[nodiscard]] tl::unexpected<Error> complain(std::size_t column, std::string message,
                                                std::string remedy) const {
-    return fail(ErrorCode::bad_input, fmt::format("{}:{}:{}: {}", file_, line_number_, column, message),
+    const bool of_map = !map_.empty() && !header_read_;
+    return fail(ErrorCode::bad_input,
+                of_map ? fmt::format("{}: {}", map_, message)
+                       : fmt::format("{}:{}:{}: {}", file_, line_number_, column, message),
                 std::move(remedy));
   }
+  [[nodiscard]] std::string remedy_of_missing() const;
   [[nodiscard]] std::size_t column_of(std::string_view name) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     return found == names_.end() ? kNowhere : static_cast<std::size_t>(found - names_.begin());
@@ -92,7 +98,8 @@ class Reader {
     return rows_ == Rows::measured ? column->required : is_angle(column->name);
   }
 
-  std::string_view text_, file_, line_;
+  std::string_view text_, file_, map_, line_;
+  bool header_read_{false};
   Rows rows_;
   std::size_t sensors_;
   bool with_reference_{false};
@@ -152,7 +159,9 @@ Result<void> Reader::read_header() {
         std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
     known_.push_back(found == columns.end() ? nullptr : &*found);
   }
-  return refuse_missing();
+  auto complete = refuse_missing();
+  header_read_ = true;
+  return complete;
 }
 
 /// As many sensors as the readings name. Where they name none, those of the first are missed.
@@ -182,6 +191,20 @@ Result<void> Reader::count_sensors(const std::vector<TableCell>& header) {
   return {};
 }
 
+std::string Reader::remedy_of_missing() const {
+  const bool microtesla = column_of("s1_x_uT") != kNowhere;
+  if (!map_.empty())
+    return microtesla ? "the columns are called s1_x_nT ... also where the readings are in microtesla: give "
+                        "them unit = \"uT\" (docs/import.md)"
+                      : "say in [columns] of the map which column of the file it is (docs/import.md)";
+  if (microtesla)
+    return "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...";
+  return fmt::format("add it to the header row (docs/pose-table.md lists every column){}",
+                     rows_ == Rows::planned
+                         ? ""
+                         : ", or say which column is which: mgt import --columns MAP.toml (docs/import.md)");
+}
+
 Result<void> Reader::refuse_missing() {
   std::string missing;
   for (const PoseColumn& column : pose_columns(sensors_)) {
@@ -199,16 +222,10 @@ Result<void> Reader::refuse_missing() {
     if (rows_ == Rows::measured && read > 0 && read < sensors_)
       return complain(1, fmt::format("missing column: {} (there is an s{})", missing, sensors_),
                       "number the sensors s1, s2, ... without a gap, each with x, y and z");
-    return complain(
-        1,
-        fmt::format("missing column: {}{}", missing,
-                    rows_ == Rows::measured && read == 0 ? ", and those of further sensors" : ""),
-        column_of("s1_x_uT") == kNowhere
-            ? fmt::format("add it to the header row (docs/pose-table.md lists every column){}",
-                          rows_ == Rows::measured ? ", or say which column is which: mgt import --columns "
-                                                    "MAP.toml (docs/import.md)"
-                                                  : "")
-            : "the readings are in microtesla: multiply them by 1000, and call the columns s1_x_nT ...");
+    return complain(1,
+                    fmt::format("missing column: {}{}", missing,
+                                rows_ == Rows::measured && read == 0 ? ", and those of further sensors" : ""),
+                    remedy_of_missing());
   }
   const auto there = std::count_if(kReference.begin(), kReference.end(),
                                    [&](std::string_view name) { return column_of(name) != kNowhere; });
@@ -326,8 +343,8 @@ Result<PoseTable> Reader::read() {
 
 }  // namespace
 
-Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file) {
-  return Reader(text, file, Rows::measured, kSensorCount).read();
+Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file, std::string_view map) {
+  return Reader(text, file, Rows::measured, kSensorCount, map).read();
 }
 
 Result<PoseTable> parse_pose_list(std::string_view text, std::string_view file, std::size_t sensors) {

@@ -17,8 +17,10 @@ namespace mgtd::calib::poses {
 /// file:line:column and what to do: a missing column, a gap in the numbers of the sensors, a column named
 /// twice, a row of another length, text where a number belongs, nan, inf, a number that cannot be
 /// (PoseColumn::limits), an unreadable time, a pose number twice, a reference field without all three
-/// components, a table without a row. `file` is for the messages.
-[[nodiscard]] Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file);
+/// components, a table without a row. `file` is for the messages; `map` as well: the file that names the
+/// columns of an imported table, whose header nobody wrote.
+[[nodiscard]] Result<PoseTable> parse_pose_table(std::string_view text, std::string_view file,
+                                                 std::string_view map = {});
 
 /// The same of poses that are still to be measured: the three angles are required, readings are not looked
 /// for. `sensors`: of the array; a column of any further sensor is refused.

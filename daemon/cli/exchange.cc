@@ -49,7 +49,7 @@ Result<store::PoseSource> imported(const ExchangeArguments& args) {
   if (!text) return tl::unexpected(text.error());
   const auto table = calib::poses::import_table(*text, args.from, *map);
   if (!table) return tl::unexpected(table.error());
-  auto poses = calib::poses::parse_pose_table(*table, args.from);
+  auto poses = calib::poses::parse_pose_table(*table, args.from, args.columns);
   if (!poses) return tl::unexpected(poses.error());
   return store::PoseSource{*std::move(poses), std::nullopt, {}, {}};
 }

@@ -9,6 +9,7 @@ namespace mgtd::calib::poses {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 ImportMap three_axes(std::string x, std::string y, std::string z, double scale = 1) {
   return {.columns = {{"s1_x_nT", std::move(x), scale},
@@ -141,6 +142,25 @@ TEST(TableImport, ATimeThatGoesBackIsRefused) {
       import_table("t,a,b,c\n2026-11-21T10:00:01Z,1,2,3\n2026-11-21T10:00:00Z,4,5,6\n", "f", map);
   ASSERT_FALSE(dates);
   EXPECT_THAT(dates.error().message, HasSubstr("f:3:1: the time goes back"));
+}
+
+/// Who writes the map sends nobody to write one, and has no header row to add to.
+TEST(TableImport, AColumnThatTheMapDoesNotNameIsMissingThere) {
+  const auto refused = [](ImportMap map) {
+    const auto text = import_table("a,b,c\n1,2,3\n", "log.csv", map);
+    EXPECT_TRUE(text) << text.error().text();
+    const auto table = parse_pose_table(text.value_or(""), "log.csv", "map.toml");
+    return table ? Error{} : table.error();
+  };
+  ImportMap map = three_axes("a", "b", "c");
+  map.columns.pop_back();
+  const Error missing = refused(map);
+  EXPECT_EQ(missing.message, "map.toml: missing column: s1_z_nT");
+  EXPECT_THAT(missing.remedy, HasSubstr("[columns] of the map"));
+  for (ImportedColumn& column : map.columns) column.to = column.to.substr(0, 5) + "uT";
+  const Error microtesla = refused(map);
+  EXPECT_THAT(microtesla.remedy, HasSubstr("unit = \"uT\""));
+  for (const Error& error : {missing, microtesla}) EXPECT_THAT(error.remedy, Not(HasSubstr("mgt import")));
 }
 
 TEST(UnitStep, KnowsTheUnitsOfAColumnByItsName) {
