@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calib/report/column_blocks.h"
 #include "calib/report/json_number.h"
 #include "calib/stats/probability.h"
 
@@ -69,7 +70,7 @@ std::string named_text(const validity::Change& change) {
   return out;
 }
 
-std::string change_table(const validity::Change& change, std::size_t rows) {
+std::string change_table(const validity::Change& change, std::size_t rows, std::size_t width) {
   const PerSensor<double>& others = change.others_log10_p;
   std::string out =
       others.size() == 1
@@ -77,15 +78,15 @@ std::string change_table(const validity::Change& change, std::size_t rows) {
           : "were it one sensor that changed, would the others be as they were?";
   for (std::size_t i = 0; others.size() > 1 && i < others.size(); ++i)
     out += fmt::format("   s{} {}", i + 1, stats::p_phrase(others[i]));
-  out += fmt::format("\n\n{:<24} {:>20} {:>18} {:>8} {:>20}\n", "as if it alone changed", "by", "sd",
-                     "sigmas", "smallest to be seen");
+  std::vector<NamedRow> table{{"as if it alone changed", {"by", "sd", "sigmas", "smallest to be seen"}}};
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
     const validity::ParameterChange& p = change.parameters[j];
-    out += fmt::format("{:<24} {:>20} {:>18} {:>8.1f} {:>20}\n", p.name, amount(p.change, p.unit, true),
-                       amount(p.sd, p.unit, false), p.sigmas,
-                       std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none");
+    table.push_back(
+        {p.name,
+         {amount(p.change, p.unit, true), amount(p.sd, p.unit, false), fmt::format("{:.1f}", p.sigmas),
+          std::isfinite(p.seen) ? amount(p.seen, p.unit, false) : "none"}});
   }
-  return out;
+  return out + "\n\n" + column_blocks(table, width);
 }
 
 std::string seen_text(const validity::Change& change) {

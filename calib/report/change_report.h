@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "calib/report/seen_width.h"
 #include "calib/validity/change.h"
 
 /// These functions write a change of the calibration as a JSON object and as text for a person.
@@ -17,7 +19,8 @@ namespace mgtd::calib::report {
 /// "p = 0.32; chi-square 41.0 for 45 directions"
 [[nodiscard]] std::string figures_text(const validity::Change& change);
 /// By sensor whether its change alone would do, then the `rows` parameters that differ most.
-[[nodiscard]] std::string change_table(const validity::Change& change, std::size_t rows);
+[[nodiscard]] std::string change_table(const validity::Change& change, std::size_t rows,
+                                       std::size_t width = kAnyWidth);
 /// Smallest change that would be found in 80 of 100 cases, worst over the sensors, by kind of parameter.
 [[nodiscard]] std::string seen_text(const validity::Change& change);
 

@@ -17,5 +17,7 @@ struct NamedRow {
 /// `cell_width`, right-aligned. At least one column of cells stands in a block, even where it does not fit.
 [[nodiscard]] std::string column_blocks(const std::vector<NamedRow>& rows, std::size_t name_width,
                                         std::size_t cell_width, std::size_t width);
+/// Every column is as wide as the widest that stands in it, with two blanks between.
+[[nodiscard]] std::string column_blocks(const std::vector<NamedRow>& rows, std::size_t width);
 
 }  // namespace mgtd::calib::report

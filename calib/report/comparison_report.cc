@@ -89,6 +89,27 @@ std::string noise_text(const criticism::tests::Comparison& c) {
   return out + "\n";
 }
 
+/// A line for each covariate, beside the name of its channel; below it where that is too wide.
+std::string channel_table(const std::vector<criticism::tests::ResidualChannel>& channels, std::size_t width) {
+  constexpr std::size_t kBeside = 80;
+  const auto row = [width](const std::string& channel, const std::string& dependence) {
+    if (width >= kBeside) return fmt::format("{:<26}  {}\n", channel, dependence);
+    return (channel.empty() ? "" : channel + "\n") + "  " + dependence + "\n";
+  };
+  std::string out = row(fmt::format("{:<13} {:>12}", "channel", "rms"),
+                        fmt::format("{:<12} {:<9} {:>8}  means, low to high", "against", "strongest", "p"));
+  for (const criticism::tests::ResidualChannel& channel : channels) {
+    std::string name = fmt::format("{:<13} {:>8.3g} {:<4}", channel.name, channel.rms, channel.unit);
+    if (channel.against.empty()) out += row(name, "nothing recorded that it could depend on");
+    for (const criticism::tests::Dependence& d : channel.against) {
+      out += row(name, fmt::format("{:<12} {:<9} {:>8}  {}", d.covariate, d.component,
+                                   stats::p_text(d.log10_p), plot(d.means)));
+      name.clear();
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::string> alike_text(const criticism::tests::Comparison& c) {
@@ -133,20 +154,9 @@ json to_json(const criticism::tests::Comparison& c) {
           {"outliers", std::move(outliers)}};
 }
 
-std::string to_text(const criticism::tests::Comparison& c) {
-  std::string out = noise_text(c);
+std::string to_text(const criticism::tests::Comparison& c, std::size_t width) {
+  std::string out = noise_text(c) + "\n" + channel_table(c.channels, width);
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "\n{:<13} {:>12}   {:<12} {:<9} {:>8}  means over it, lowest to highest\n", "channel",
-                 "rms", "against", "strongest", "p");
-  for (const criticism::tests::ResidualChannel& channel : c.channels) {
-    std::string head = fmt::format("{:<13} {:>8.3g} {:<4}", channel.name, channel.rms, channel.unit);
-    for (const criticism::tests::Dependence& d : channel.against) {
-      fmt::format_to(to, "{:<26}  {:<12} {:<9} {:>8}  {}\n", head, d.covariate, d.component,
-                     stats::p_text(d.log10_p), plot(d.means));
-      head.clear();
-    }
-    if (!head.empty()) fmt::format_to(to, "{:<26}  nothing recorded that it could depend on\n", head);
-  }
   for (const std::string& line : alike_text(c)) fmt::format_to(to, "  {}\n", line);
   for (const criticism::tests::ResidualChannel& channel : c.channels)
     fmt::format_to(to, "  {:<13} {}\n", channel.name, channel.meaning);

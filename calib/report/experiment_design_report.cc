@@ -9,6 +9,7 @@
 #include "calib/calibration/scale_gauge.h"
 #include "calib/fit/checks/identifiability_text.h"
 #include "calib/fit/joint/joint_setup.h"
+#include "calib/report/column_blocks.h"
 #include "calib/report/experiment_power_report.h"
 #include "calib/report/json_number.h"
 #include "calib/report/shown_number.h"
@@ -31,17 +32,18 @@ json angles_json(const TableAngles& a) {
           {"roll_deg", to_deg(a.roll_rad)}};
 }
 
-std::string tensor_row(std::string_view what, const Gradient& g) {
-  std::string row = fmt::format("{:<34}", what);
-  for (const double sd : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row += shown_number(sd, 9, 3);
-  return row + "\n";
+NamedRow tensor_row(const char* what, const Gradient& g) {
+  NamedRow row{what, {}};
+  for (const double sd : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) row.cells.push_back(shown_number(sd, 1, 3));
+  return row;
 }
 
-std::string tensor_table(const design::DesignReport& r) {
-  return fmt::format("{:<34}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "standard error of the tensor, nT/m", "xx",
-                     "yy", "zz", "xy", "xz", "yz") +
-         tensor_row("by the calibration", r.tensor_sd_nT_per_m) +
-         tensor_row("by the noise of one pose mean", r.noise_sd_nT_per_m);
+std::string tensor_table(const design::DesignReport& r, std::size_t width) {
+  return "standard error of the tensor, nT/m\n" +
+         column_blocks({{"", {"xx", "yy", "zz", "xy", "xz", "yz"}},
+                        tensor_row("by the calibration", r.tensor_sd_nT_per_m),
+                        tensor_row("by the noise of one pose mean", r.noise_sd_nT_per_m)},
+                       width);
 }
 
 /// Of an array that sees no gradient.
@@ -56,16 +58,15 @@ std::string amount(const design::Expected& e) {
   return e.unit.empty() ? fmt::format("{:.3g} ppm", 1e6 * e.sd) : fmt::format("{:.3g} {}", e.sd, e.unit);
 }
 
-std::string parameter_table(const design::DesignReport& r) {
-  std::string out = fmt::format("{:<20}", "standard error");
-  for (std::size_t i = 1; i <= r.sensors; ++i) out += fmt::format("{:>16}", fmt::format("s{}", i));
-  out += "\n";
+std::string parameter_table(const design::DesignReport& r, std::size_t width) {
+  std::vector<NamedRow> rows{{"standard error", {}}};
+  for (std::size_t i = 1; i <= r.sensors; ++i) rows.front().cells.push_back(fmt::format("s{}", i));
   for (std::size_t p = 0; p < sensor::kSensorParameters; ++p) {
-    out += fmt::format("{:<20}", sensor::shown_parameters()[p].name);
+    NamedRow& row = rows.emplace_back(NamedRow{sensor::shown_parameters()[p].name, {}});
     for (std::size_t i = 0; i < r.sensors; ++i)
-      out += fmt::format("{:>16}", amount(r.parameters[i * sensor::kSensorParameters + p]));
-    out += "\n";
+      row.cells.push_back(amount(r.parameters[i * sensor::kSensorParameters + p]));
   }
+  std::string out = column_blocks(rows, width);
   for (std::size_t j = r.sensors * sensor::kSensorParameters; j < r.parameters.size(); ++j) {
     const design::Separation& s = r.separations[j - r.sensors * sensor::kSensorParameters];
     out +=
@@ -92,7 +93,7 @@ std::string help_list(const design::DesignReport& r) {
     return out;
   }
   for (const design::DesignReport::Helpful& h : r.helpful) {
-    out += fmt::format("  {:<44} takes {:.1f} % off the variance of the {}\n", fit::checks::to_text(h.angles),
+    out += fmt::format("  {:<38} takes {:.1f} % off the {}'s variance\n", fit::checks::to_text(h.angles),
                        100 * h.share, r.sees_gradient() ? "tensor" : "field");
   }
   return out;
@@ -165,13 +166,14 @@ json to_json(const design::DesignReport& r) {
   return out;
 }
 
-std::string to_text(const design::DesignReport& r) {
+std::string to_text(const design::DesignReport& r, std::size_t width) {
   std::string out = fmt::format("{} poses: {}\n", r.poses,
                                 r.determined ? "every parameter would be determined"
                                              : "NOT ENOUGH, some parameters would stay unknown");
   out += fmt::format("assumed: {}\ngauge: {}\n", assumed_text(r.assumed), gauge_text(r.gauge));
   if (r.determined) {
-    out += "\n" + (r.sees_gradient() ? tensor_table(r) : field_table(r)) + "\n" + parameter_table(r);
+    out += "\n" + (r.sees_gradient() ? tensor_table(r, width) : field_table(r)) + "\n" +
+           parameter_table(r, width);
   }
   const std::string weak = weak_list(r);
   out += (weak.empty() ? "" : "\n" + weak) + "\n" + help_list(r);

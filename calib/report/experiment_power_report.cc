@@ -10,14 +10,14 @@ namespace {
 using nlohmann::json;
 
 std::string seen(const design::DesignPower& power) {
-  std::string out = fmt::format("{:<32}{:>14} {:>12}  {:<12}{}\n", "effect that would be seen above",
+  std::string out = fmt::format("{:<34} {:>8} {:>8}  {:<13} {}\n", "effect that would be seen above",
                                 "smallest", "sd", "unit", "where");
   for (const criticism::tests::Detectable& d : power.detectable) {
     if (d.value > 0)
       out +=
-          fmt::format("  {:<30}{:>14.3g} {:>12.2g}  {:<12}{}\n", d.effect, d.value, d.sd(), d.unit, d.where);
+          fmt::format("  {:<32} {:>8.3g} {:>8.2g}  {:<13} {}\n", d.effect, d.value, d.sd(), d.unit, d.where);
     else
-      out += fmt::format("  {:<30}  {}\n", d.effect, "at no size that occurs");
+      out += fmt::format("  {:<32} at no size that occurs\n", d.effect);
   }
   return out;
 }

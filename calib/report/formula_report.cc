@@ -35,9 +35,9 @@ std::string to_text(const criticism::tests::FormulaExamination& x) {
   const auto to = std::back_inserter(out);
   if (x.wholly_absorbed()) {
     out +=
-        "the calibration absorbs it whole: offsets, scales, angles, attitudes and field of these poses take\n"
-        "up every trace of it, so no residual can show it, and adding it changes nothing but the "
-        "parameters\n";
+        "the calibration absorbs it whole: offsets, scales, angles, attitudes and field of these poses take "
+        "up "
+        "every trace of it, so no residual can show it, and adding it changes nothing but the parameters\n";
     return out;
   }
   fmt::format_to(to, "{:.1f} % of it (in squares) is already absorbed by calibration, attitude and field\n",

@@ -12,6 +12,7 @@
 #include "calib/report/explain_note_text.h"
 #include "calib/report/fit_report_json.h"
 #include "calib/report/residual_words.h"
+#include "calib/report/text_bar.h"
 #include "calib/stats/probability.h"
 #include "proto/json_text.h"
 
@@ -20,8 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kBar_characters = 40;
-constexpr std::size_t kName_characters = 34;
+constexpr std::size_t kNumbers = 47;  ///< columns behind the name, with the gap before the bar
 
 json round_json(const criticism::search::ImproveRound& r) {
   return {{"added", r.added.effect},
@@ -60,6 +60,30 @@ std::string stop_text(const criticism::search::ImproveReport& r) {
 
 std::string held_out(const std::optional<double>& x) { return x ? fmt::format("{:.3f}", *x) : "-"; }
 
+/// A line for each round. A name that is too long for its column stands above its line.
+std::string rounds_table(const criticism::search::ImproveReport& r, std::size_t width) {
+  constexpr std::size_t kLeast = 12, kMost = 34;
+  const std::size_t column = std::clamp(width, kNumbers + kLeast, kNumbers + kMost) - kNumbers;
+  const double top = r.rounds.empty() ? r.fit.residual_nT : r.rounds.front().rms_before_nT;
+  const int room = bar_room(width, column + kNumbers);
+  std::string out;
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to, "{:<{}} {:>8} {:>8} {:>9} {:>9} {:>6}\n", "added", column, "d", "p", "residual",
+                 "held out", "price");
+  const auto before = r.rounds.empty() ? r.fit.held_out_residual_nT : r.rounds.front().held_out_before_nT;
+  fmt::format_to(to, "{:<{}} {:>8} {:>8} {:>9.3f} {:>9} {:>6}  {}\n", "(nothing)", column, "", "", top,
+                 held_out(before), "", bar(top, top, room));
+  for (const criticism::search::ImproveRound& x : r.rounds) {
+    std::string name = x.added.spec;
+    if (name.size() > column) fmt::format_to(to, "{}\n", std::exchange(name, {}));
+    fmt::format_to(to, "{:<{}} {:>8.1f} {:>8} {:>9.3f} {:>9} {:>6.2f}  {}\n", name, column, x.added.d,
+                   stats::p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT),
+                   x.price.sd_ratio, bar(x.rms_after_nT, top, room));
+    if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
+  }
+  return out;
+}
+
 }  // namespace
 
 json to_json(const criticism::search::ImproveReport& r) {
@@ -75,34 +99,16 @@ json to_json(const criticism::search::ImproveReport& r) {
           {"fit", fit}};
 }
 
-std::string to_text(const criticism::search::ImproveReport& r) {
-  std::string out;
+std::string to_text(const criticism::search::ImproveReport& r, std::size_t width) {
+  std::string out = rounds_table(r, width);
   const auto to = std::back_inserter(out);
-  const double top = r.rounds.empty() ? r.fit.residual_nT : r.rounds.front().rms_before_nT;
-  const auto bar = [&](double rms) {
-    return std::string(static_cast<std::size_t>(std::clamp(rms / top, 0.0, 1.0) * kBar_characters), '#');
-  };
-  fmt::format_to(to, "{:<34} {:>8} {:>8} {:>9} {:>9} {:>6}\n", "added", "d", "p", "residual", "held out",
-                 "price");
-  const auto before = r.rounds.empty() ? r.fit.held_out_residual_nT : r.rounds.front().held_out_before_nT;
-  fmt::format_to(to, "{:<34} {:>8} {:>8} {:>9.3f} {:>9} {:>6}  {}\n", "(nothing)", "", "", top,
-                 held_out(before), "", bar(top));
-  for (const criticism::search::ImproveRound& x : r.rounds) {
-    std::string name = x.added.spec;
-    if (name.size() > kName_characters) fmt::format_to(to, "{}\n", std::exchange(name, {}));
-    fmt::format_to(to, "{:<34} {:>8.1f} {:>8} {:>9.3f} {:>9} {:>6.2f}  {}\n", name, x.added.d,
-                   stats::p_text(x.added.log10_p), x.rms_after_nT, held_out(x.held_out_after_nT),
-                   x.price.sd_ratio, bar(x.rms_after_nT));
-    if (!x.possible.empty()) fmt::format_to(to, "    could also be {}\n", fmt::join(x.possible, ", "));
-  }
   fmt::format_to(to, "residual: nT, {}\n", kResidualIs);
   fmt::format_to(to,
                  "held out: nT, the same on poses that the fit had not seen, a tenth of the run at a time\n");
   if (!r.rounds.empty())
     out +=
         "d: size of the effect in its own standard deviations; price: growth of the standard deviation of "
-        "that\n"
-        "   parameter of the sensors that loses most\n";
+        "that parameter of the sensors that loses most\n";
   fmt::format_to(to, "noise of a pose mean: {:.3g} nT\n", r.fit.noise_nT);
   fmt::format_to(to, "stopped: {}\n", stop_text(r));
   for (const std::string& note : note_texts(r.notes)) fmt::format_to(to, "note: {}\n", note);

@@ -18,10 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-std::string line(const char* what, double before, double after, const char* unit) {
+std::string lines(const char* what, double before, double after, const char* unit, std::size_t width) {
+  constexpr std::size_t kBeforeBar = 46;
   const double top = std::max(before, after);
+  const int room = bar_room(width, kBeforeBar);
   return fmt::format("{:<22} before {:>9.3f} {:<5} {}\n{:<22} after  {:>9.3f} {:<5} {}\n", what, before, unit,
-                     bar(before, top), "", after, unit, bar(after, top));
+                     bar(before, top, room), "", after, unit, bar(after, top, room));
 }
 
 const char* name_of(criticism::search::Veto veto) {
@@ -75,14 +77,14 @@ json to_json(const criticism::search::ModelChange& c) {
           {"vetoed", c.vetoed()}};
 }
 
-std::string to_text(const criticism::search::ModelChange& c) {
+std::string to_text(const criticism::search::ModelChange& c, std::size_t width) {
   std::string out = fmt::format("{} {}\n", c.adding ? "with" : "without", c.spec);
   const auto to = std::back_inserter(out);
-  out += line("residual", c.rms_before_nT, c.rms_after_nT, "nT");
+  out += lines("residual", c.rms_before_nT, c.rms_after_nT, "nT", width);
   if (c.held_out_before_nT && c.held_out_after_nT)
-    out += line("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT");
+    out += lines("on poses held out", *c.held_out_before_nT, *c.held_out_after_nT, "nT", width);
   if (!std::isnan(c.tensor_after_nT_per_m))
-    out += line("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m");
+    out += lines("tensor error, rms", c.tensor_before_nT_per_m, c.tensor_after_nT_per_m, "nT/m", width);
   fmt::format_to(to, "{:<29} {:>9.3f} nT\n(residual: {})\n", "noise of a pose mean", c.noise_nT, kResidualIs);
   fmt::format_to(to, "chi-square {} by {:.5g} where {:.5g} was predicted; chance alone: {}{}\n",
                  c.adding ? "fell" : "rose", c.realised, c.predicted, stats::p_phrase(c.log10_p),

@@ -122,7 +122,7 @@ std::string to_text(const criticism::search::NextReport& r) {
     fmt::format_to(to, "{}{} or {}?\n", r.hypotheses.size() > 2 ? "hardest to tell apart: " : "",
                    shown(r, r.effect), shown(r, r.alternative));
     if (r.assumed)
-      out += "neither is large enough to be seen on this run; at the smallest size that would be,\n";
+      out += "neither is large enough to be seen on this run; at the smallest size that would be, ";
     fmt::format_to(to, "these poses give the right name with probability {:.3f}\n", r.p_right_before);
   }
   if (!r.steps.empty())

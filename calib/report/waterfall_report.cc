@@ -38,14 +38,16 @@ json to_json(const criticism::search::Waterfall& w) {
           {"noise_floor_nT_per_m", w.floor_nT_per_m}};
 }
 
-std::string to_text(const criticism::search::Waterfall& w) {
+std::string to_text(const criticism::search::Waterfall& w, std::size_t width) {
+  constexpr std::size_t kBeforeBar = 62;
+  const int room = bar_room(width, kBeforeBar, kBarWidth);
   std::string out;
   const auto to = std::back_inserter(out);
   double top = w.without_nT;
   for (const criticism::search::WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
   const auto total = [&](const char* what, double nT, double nT_per_m) {
     fmt::format_to(to, "{:<40} {:>9.3f} {}  {}\n", what, nT, shown_number(nT_per_m, 9, 3),
-                   bar(nT, top, kBarWidth));
+                   bar(nT, top, room));
   };
   fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
   total("without any effect", w.without_nT, w.without_nT_per_m);

@@ -21,14 +21,17 @@ int print_list(const Session& session) {
     print_json(*reply);
     return 0;
   }
-  if (reply->at("calibrations").empty()) fmt::print("no calibrations yet: mgt run start proposes one\n");
+  std::string text;
+  if (reply->at("calibrations").empty()) text = "no calibrations yet: mgt run start proposes one\n";
   for (const auto& c : reply->at("calibrations")) {
     const std::string why = c.value("why", "");
-    fmt::print("{:<14} {:<9} since {}  from {}{}{}\n", c.at("id").get<std::string>(),
-               c.at("state").get<std::string>(), c.at("since").get<std::string>().substr(0, 19),
-               c.at("origin").get<std::string>(), c.at("forced") == true ? "  (failed its checks)" : "",
-               why.empty() ? "" : "  because: " + why);
+    text +=
+        fmt::format("{:<14} {:<9} since {}  from {}{}{}\n", c.at("id").get<std::string>(),
+                    c.at("state").get<std::string>(), c.at("since").get<std::string>().substr(0, 19),
+                    c.at("origin").get<std::string>(), c.at("forced") == true ? "  (failed its checks)" : "",
+                    why.empty() ? "" : "  because: " + why);
   }
+  print_text(session, text);
   return 0;
 }
 

@@ -31,6 +31,20 @@ struct CheckArguments {
   std::shared_ptr<FitFlags> flags;
 };
 
+std::string text_of(const calib::validity::ValidityReport& checked, std::size_t width) {
+  std::string out = fmt::format("calibration {} against {} poses: {}\n", checked.calibration, checked.poses,
+                                checked.valid ? "VALID" : "NOT VALID");
+  out += fmt::format("residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}\n", checked.residual_nT,
+                     calib::report::kResidualIs, checked.noise_nT,
+                     checked.noise_from_dwells
+                         ? "the larger of what the dwells tell and what the calibration's own run left"
+                         : "of the calibration's own run");
+  out += calib::report::change_table(checked.change, kPosesShown, width) + "\n";
+  for (const std::string& reason : calib::report::validity_reasons(checked))
+    out += fmt::format("note: {}\n", reason);
+  return out;
+}
+
 int run_check(const Session& session, const CheckArguments& args) {
   const auto calibration = read_calibration(args.calibration);
   if (!calibration) return report(session, calibration.error());
@@ -48,16 +62,7 @@ int run_check(const Session& session, const CheckArguments& args) {
   if (session.json) {
     print_json(calib::report::to_json(*checked));
   } else {
-    fmt::print("calibration {} against {} poses: {}\n", checked->calibration, checked->poses,
-               checked->valid ? "VALID" : "NOT VALID");
-    fmt::print("residual {:.3g} nT ({}); noise of a pose mean {:.3g} nT, {}\n", checked->residual_nT,
-               calib::report::kResidualIs, checked->noise_nT,
-               checked->noise_from_dwells
-                   ? "the larger of what the dwells tell and what the calibration's own run left"
-                   : "of the calibration's own run");
-    fmt::print("{}\n", calib::report::change_table(checked->change, kPosesShown));
-    for (const std::string& reason : calib::report::validity_reasons(*checked))
-      fmt::print("note: {}\n", reason);
+    print_text(session, text_of(*checked, table_width(session)));
   }
   return checked->valid ? 0 : 1;
 }

@@ -92,7 +92,7 @@ int run_compare(const Session& session, const CompareArguments& args) {
     }
     print_json(out);
   } else {
-    fmt::print("{}", calib::report::to_text(*comparison));
+    print_text(session, calib::report::to_text(*comparison, table_width(session)));
   }
   return comparison->fits ? 0 : 1;
 }

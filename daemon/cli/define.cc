@@ -19,6 +19,7 @@
 #include "daemon/cli/kept_run.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/store/user_formulas.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -143,6 +144,31 @@ bool nothing_left(const calib::criticism::tests::FormulaExamination& x) {
 
 constexpr double kAgree_sigmas = 4;
 
+std::string text_of(const DefineArguments& args, const calib::criticism::tests::FormulaExamination& x,
+                    const store::Definition& definition, const Confirmation& c) {
+  std::string out = calib::report::to_text(x);
+  if (x.wholly_absorbed()) return out;
+  if (nothing_left(x)) return out + "not kept: nothing of it is left to be seen on these poses\n";
+  if (args.tried) return out + "tried: nothing is kept\n";
+  if (definition.discovered) out += definition.discovered->text() + "\n";
+  const std::string run = shell_word(args.run);
+  if (!c.asked) {
+    out += fmt::format(
+        "exploratory: these poses suggested it, so their p-value proves nothing; a second run does:\n"
+        "  mgt define SECOND.mgtrun {} --from {}\n",
+        args.name, run);
+  } else if (c.given) {
+    out += fmt::format(
+        "confirmed on a second run; the coefficients differ by {:.1f} standard deviations at most\n",
+        c.sigmas);
+  } else {
+    out += fmt::format(
+        "not confirmed: on this run p {:.2g}, and the coefficients differ by {:.1f} standard deviations\n",
+        std::pow(10, x.log10_p), c.sigmas);
+  }
+  return out + fmt::format("kept in {}; mgt add {} {} puts it into the model\n", args.run, args.name, run);
+}
+
 void print(const Session& session, const DefineArguments& args,
            const calib::criticism::tests::FormulaExamination& x, const store::Definition& definition,
            const Confirmation& c, json out) {
@@ -157,33 +183,9 @@ void print(const Session& session, const DefineArguments& args,
     out["discovered"] = definition.discovered ? json(definition.discovered->text()) : json();
     out["text"] = calib::report::to_text(x);
     print_json(out);
-    return;
-  }
-  fmt::print("{}", calib::report::to_text(x));
-  if (x.wholly_absorbed()) return;
-  if (nothing_left(x)) {
-    fmt::print("not kept: nothing of it is left to be seen on these poses\n");
-    return;
-  }
-  if (args.tried) {
-    fmt::print("tried: nothing is kept\n");
-    return;
-  }
-  if (definition.discovered) fmt::print("{}\n", definition.discovered->text());
-  if (!c.asked) {
-    fmt::print(
-        "exploratory: these poses suggested it, so their p-value proves nothing; a second run does\n"
-        "(mgt define SECOND.mgtrun {} --from {})\n",
-        args.name, args.run);
-  } else if (c.given) {
-    fmt::print("confirmed on a second run; the coefficients differ by {:.1f} standard deviations at most\n",
-               c.sigmas);
   } else {
-    fmt::print(
-        "not confirmed: on this run p {:.2g}, and the coefficients differ by {:.1f} standard deviations\n",
-        std::pow(10, x.log10_p), c.sigmas);
+    print_text(session, text_of(args, x, definition, c));
   }
-  fmt::print("kept in {}; mgt add {} {} puts it into the model\n", args.run, args.name, args.run);
 }
 
 int drop(const Session& session, const DefineArguments& args, KeptRun& run) {

@@ -56,9 +56,11 @@ int run_diff(const Session& session, const DiffArguments& args) {
                 {"remarks", calib::report::remarks_of(found)},
                 {"change", calib::report::to_json(found.change)}});
   } else {
-    fmt::print("{}\n\n{}\n", calib::report::conclusion_text(found),
-               calib::report::change_table(found.change, kChangesShown));
-    for (const std::string& remark : calib::report::remarks_of(found)) fmt::print("note: {}\n", remark);
+    std::string text =
+        fmt::format("{}\n\n{}\n", calib::report::conclusion_text(found),
+                    calib::report::change_table(found.change, kChangesShown, table_width(session)));
+    for (const std::string& remark : calib::report::remarks_of(found)) text += "note: " + remark + "\n";
+    print_text(session, text);
   }
   return found.changed ? 1 : 0;
 }

@@ -88,9 +88,10 @@ int run_improve(const Session& session, const ImproveArguments& args) {
     if (!args.no_law) out["law"] = law_json(law, *source, args.run);
     print_json(out);
   } else {
-    fmt::print("{}", calib::report::to_text(*improved));
-    if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
-    fmt::print("{}", law_text(law, *source, args.run));
+    const std::size_t width = table_width(session);
+    std::string text = calib::report::to_text(*improved, width);
+    if (steps) text += "\n" + calib::report::to_text(*steps, width);
+    print_text(session, text + law_text(law, *source, args.run));
   }
   return improved->finding == calib::criticism::search::Finding::pass ? 0 : 1;
 }

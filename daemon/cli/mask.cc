@@ -86,11 +86,12 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
     print_json(out);
     return 0;
   }
-  fmt::print("{}: {}{}\n", action == "mask" ? "masked" : "taken in again", spec,
-             args.why.empty() ? "" : " (" + args.why + ")");
-  if (before || after) fmt::print("residual {}\n", residual_change(result, "->"));
-  fmt::print("masked now: {}\n", masked.empty() ? "none" : store::pose_numbers_text(masked));
-  if (!after) fmt::print("no fit of what is left yet: {}\n", after.error().text());
+  std::string text = fmt::format("{}: {}{}\n", action == "mask" ? "masked" : "taken in again", spec,
+                                 args.why.empty() ? "" : " (" + args.why + ")");
+  if (before || after) text += fmt::format("residual {}\n", residual_change(result, "->"));
+  text += fmt::format("masked now: {}\n", masked.empty() ? "none" : store::pose_numbers_text(masked));
+  if (!after) text += fmt::format("no fit of what is left yet: {}\n", after.error().text());
+  print_text(session, text);
   return 0;
 }
 

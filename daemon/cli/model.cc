@@ -108,12 +108,13 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
           calib::report::words_json(calib::report::waterfall_of(*steps, change.held_out_after_nT));
     print_json(out);
   } else {
-    fmt::print("{}", calib::report::to_text(change));
-    if (steps) fmt::print("\n{}", calib::report::to_text(*steps));
-    if (choice.open()) fmt::print("\n{}\n", calib::report::to_text(choice));
-    if (keep) fmt::print("\nkept in {}; mgt undo takes it back\n", args.run);
+    const std::size_t width = table_width(session);
+    std::string text = calib::report::to_text(change, width);
+    if (steps) text += "\n" + calib::report::to_text(*steps, width);
+    if (choice.open()) text += "\n" + calib::report::to_text(choice) + "\n";
+    if (keep) text += fmt::format("\nkept in {}; mgt undo takes it back\n", args.run);
+    print_text(session, text + (args.tried ? "\ntried: nothing is kept\n" : ""));
   }
-  if (args.tried && !session.json) fmt::print("\ntried: nothing is kept\n");
   if (!good) {
     for (const calib::criticism::search::Veto veto : change.vetoes())
       fmt::print(stderr, "mgt: not kept: {}\n", calib::report::to_text(change, veto));
@@ -253,17 +254,20 @@ int run_model(const Session& session, const ModelArguments& args) {
                 {"formulas", std::move(formulas)}});
     return 0;
   }
+  std::string text;
   for (const store::ModelStep& s : *steps) {
     const json result = json::parse(s.result, nullptr, false);
     std::string change = residual_change(result, "->");
     if (!change.empty()) change = "residual " + change;
-    fmt::print("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, change, s.who);
+    text +=
+        fmt::format("{:.19}Z  {:<5} {:<36} {:<30} {}\n", format_utc(s.at), s.action, s.spec, change, s.who);
   }
-  fmt::print("the model: {}\n", model_text(model));
-  for (const store::MaskedPose& m : masked) fmt::print("masked: pose {}: {}\n", m.number, m.because);
+  text += fmt::format("the model: {}\n", model_text(model));
+  for (const store::MaskedPose& m : masked) text += fmt::format("masked: pose {}: {}\n", m.number, m.because);
   for (const store::Definition& d : source->definitions)
-    fmt::print("formula: {}{}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "",
-               d.discovered ? "; " + d.discovered->text() : "");
+    text += fmt::format("formula: {}{}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "",
+                        d.discovered ? "; " + d.discovered->text() : "");
+  print_text(session, text);
   return 0;
 }
 

@@ -149,7 +149,7 @@ int run_next(const Session& session, const NextArguments& args) {
       out["next"][i]["run"] = run_of(next->steps[i]);
     print_json(out);
   } else {
-    fmt::print("{}{}", doubts_text(*doubts), calib::report::to_text(*next));
+    print_text(session, doubts_text(*doubts) + calib::report::to_text(*next));
   }
   return next->steps.empty() && !next->effect.empty() ? 1 : 0;
 }

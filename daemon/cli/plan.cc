@@ -176,7 +176,8 @@ int run_plan(const Session& session, const PlanArguments& args) {
     if (limits) out["limits"] = run::to_json(*limits);
     print_json(out);
   } else {
-    fmt::print("{}{}", limits ? run::to_text(*limits) + "\n" : "", calib::report::to_text(*planned));
+    print_text(session, (limits ? run::to_text(*limits) + "\n" : "") +
+                            calib::report::to_text(*planned, table_width(session)));
   }
   return planned->determined ? 0 : 1;
 }

@@ -182,8 +182,8 @@ int dry_run(const Session& session, const RunArguments& args) {
     print_json(*reply);
     return 0;
   }
-  fmt::print("{}\n{}nothing was moved\n", reply->at("text").get<std::string>(),
-             limits && *limits ? run::to_text(**limits) : "");
+  print_text(session, fmt::format("{}\n{}nothing was moved\n", reply->at("text").get<std::string>(),
+                                  limits && *limits ? run::to_text(**limits) : ""));
   return 0;
 }
 
@@ -196,8 +196,8 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
   if (session.json) {
     print_json(*reply);
   } else {
-    fmt::print("{}\n{}\n{}", progress_line(*run, 100), run->message,
-               command == ControlCommand::run_status ? failed_lines(*run) : "");
+    print_text(session, fmt::format("{}\n{}\n{}", progress_line(*run, 100), run->message,
+                                    command == ControlCommand::run_status ? failed_lines(*run) : ""));
   }
   return 0;
 }
@@ -208,7 +208,7 @@ int course(const Session& session) {
   if (session.json)
     print_json(*reply);
   else
-    fmt::print("{}", course_text(*reply));
+    print_text(session, course_text(*reply));
   return 0;
 }
 
@@ -218,7 +218,7 @@ int events(const Session& session) {
   if (session.json)
     print_json(*reply);
   else
-    fmt::print("{}", events_text(*reply));
+    print_text(session, events_text(*reply));
   return 0;
 }
 

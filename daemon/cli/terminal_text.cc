@@ -107,8 +107,8 @@ TextLook look_of(const Output& output, std::string_view color) {
 
 std::string fitted(std::string_view text, std::size_t width) {
   return by_lines(text, [width](std::string_view line) {
-    const bool fits = calib::report::seen_width(line) <= width || line.starts_with("  mgt ");
-    return fits ? std::string(line) : broken(line, width);
+    if (calib::report::seen_width(line) <= width || line.starts_with("  mgt ")) return std::string(line);
+    return broken(line.substr(0, line.find_last_not_of(' ') + 1), width);  // an empty cell ends a row
   });
 }
 

@@ -2,10 +2,13 @@
 // What an operator sees on a terminal, and what a pipe gets instead.
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "calib/report/seen_width.h"
 #include "tests/integration/bench.h"
 #include "tests/support/on_terminal.h"
 
@@ -22,7 +25,8 @@ std::vector<std::string> command(const Bench& bench, std::vector<std::string> wo
   return words;
 }
 
-/// Without escape sequences; a terminal ends its lines with CR LF.
+/// Without escape sequences, and without progress that was written over; a terminal ends its lines with CR
+/// LF.
 std::string plain(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -31,15 +35,19 @@ std::string plain(const std::string& text) {
       if (i == std::string::npos) break;
     } else if (text[i] != '\r') {
       out += text[i];
+    } else if (text.substr(i + 1, 1) != "\n") {
+      out.erase(out.rfind('\n') + 1);
     }
   }
   return out;
 }
 
+/// In characters as they are seen; commands to copy stay whole and do not count.
 std::size_t longest_line(const std::string& text) {
   std::size_t out = 0;
   std::istringstream lines(plain(text));
-  for (std::string line; std::getline(lines, line);) out = std::max(out, line.size());
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("  mgt ")) out = std::max(out, calib::report::seen_width(line));
   return out;
 }
 
@@ -54,6 +62,40 @@ TEST(Terminal, ReportsFitItAndAreColouredThereOnly) {
   EXPECT_THAT(run_on_terminal(status, 80, {"NO_COLOR=1"}).out, Not(HasSubstr("\x1b")));
   EXPECT_THAT(bench.mgt({"status"}).out, Not(HasSubstr("\x1b")));
   EXPECT_THAT(bench.mgt({"--color", "always", "status"}).out, HasSubstr(kGreenLive));
+}
+
+TEST(Terminal, EveryReportOfPosesFitsItAndIsWholeInAPipe) {
+  const TemporaryDirectory dir;
+  const std::string clean = dir / "clean.csv", poses = dir / "poses.csv", cal = dir / "cal.json",
+                    run = dir / "run.mgtrun";
+  std::ofstream(dir / "rig.toml")
+      << "[rig]\nname = \"g\"\nparameters = \"table6\"\nseed = 2\n"
+         "[[effect]]\nname = \"site.gradient\"\nnT_per_m = [50, -20, 15, -25, 10]\n";
+  ASSERT_EQ(run_program({program("mgt-rig"), "table", "-o", clean}, dir.path()).exit_code, 0);
+  ASSERT_EQ(
+      run_program({program("mgt-rig"), "table", "--scenario", dir / "rig.toml", "-o", poses}, dir.path())
+          .exit_code,
+      0);
+  ASSERT_EQ(run_program({program("mgt"), "fit", clean, "-o", cal}, dir.path()).exit_code, 0);
+  ASSERT_EQ(run_program({program("mgt"), "import", poses, "-o", run}, dir.path()).exit_code, 0);
+  const std::string formula =
+      "k1*(T_degC - 20)^2 + k2*(T_degC - 20)^3 + k3*(T_degC - 20)^4*sign(u)*abs(u)^0.5";
+  for (std::vector<std::string> report :
+       std::vector<std::vector<std::string>>{{"compare", poses},
+                                             {"improve", poses},
+                                             {"next", poses, "axis.offset.drift", "axis.gain.drift"},
+                                             {"plan"},
+                                             {"check", cal, poses},
+                                             {"diff", clean, poses},
+                                             {"define", run, "warm", formula}}) {
+    report.insert(report.begin(), program("mgt"));
+    for (const std::uint16_t columns : {std::uint16_t{60}, std::uint16_t{100}}) {
+      const std::string seen = run_on_terminal(report, columns).out;
+      EXPECT_LE(longest_line(seen), columns) << plain(seen);
+    }
+    const std::string piped = run_program(report, dir.path()).out;
+    EXPECT_GT(longest_line(piped), 100U) << piped;
+  }
 }
 
 TEST(Terminal, WatchChangesOnePanelInPlace) {

@@ -181,7 +181,7 @@ TEST(Plan, ForetellsTheFieldOfOneSensor) {
   }
   const std::string text = report::to_text(*foretold);
   EXPECT_THAT(text, ::testing::HasSubstr("standard error of the field, nT"));
-  EXPECT_THAT(text, ::testing::HasSubstr("off the variance of the field"));
+  EXPECT_THAT(text, ::testing::HasSubstr("off the field's variance"));
   EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("nan")));
 }
 

@@ -22,5 +22,12 @@ TEST(ColumnBlocks, OneColumnStandsEvenWhereItDoesNotFit) {
   EXPECT_EQ(column_blocks({{"x", {"1", "2"}}}, 6, 4, 3), "x        1\n\nx        2\n");
 }
 
+TEST(ColumnBlocks, EachColumnIsAsWideAsTheWidestThatStandsInIt) {
+  const std::vector<NamedRow> rows{{"", {"by", "smallest"}}, {"s1 ± 0", {"12 ppm", "3"}}};
+  EXPECT_EQ(column_blocks(rows, kAnyWidth), "            by  smallest\ns1 ± 0  12 ppm         3\n");
+  EXPECT_EQ(column_blocks(rows, 23),
+            "            by\ns1 ± 0  12 ppm\n\n        smallest\ns1 ± 0         3\n");
+}
+
 }  // namespace
 }  // namespace mgtd::calib::report

@@ -38,6 +38,10 @@ TEST(TerminalText, ACommandToCopyStaysWhole) {
   EXPECT_EQ(fitted(command, 20), command);
 }
 
+TEST(TerminalText, BlanksAtTheEndOfARowMakeNoLine) {
+  EXPECT_EQ(fitted("noise           0.019  \n", 22), "noise           0.019\n");
+}
+
 TEST(TerminalText, WidthIsCountedInCharacters) {
   EXPECT_EQ(fitted("12 ± 3 ± 4 ± 5 ± 6 ±\n", 21), "12 ± 3 ± 4 ± 5 ± 6 ±\n");
 }
