@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "calib/fit/joint/turned_pose.h"
 #include "calib/linear/cholesky4.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
@@ -192,6 +193,14 @@ Rows PoseBlame::of(std::size_t k, double strictness) {
   whole_.attitude_weight = std::min(whole_.attitude_weight, kLooseAttitude_per_rad);
   at_.nuisances.front() = state_.nuisances[k];
   Rows out = readings_of(strictness);
+  if (is_turned(whole_, state_.nuisances[k])) {  // seen from the table's angles less may be to blame
+    at_.nuisances.front() = at_the_table(whole_, state_);
+    const Rows from_table = readings_of(strictness);
+    if (from_table.count() <= out.count())
+      out = from_table;
+    else
+      at_.nuisances.front() = state_.nuisances[k];
+  }
   if (whole_.has_angles && !(out.count() >= static_cast<std::size_t>(channels))) {
     const Trial rest = without(out);
     out[static_cast<std::size_t>(attitude_row)] =

@@ -11,6 +11,7 @@
 #include "calib/fit/consensus.h"
 #include "calib/fit/joint/memory_variance.h"
 #include "calib/fit/joint/single_samples.h"
+#include "calib/fit/joint/turned_pose.h"
 #include "calib/fit/joint/without_poses.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
@@ -34,6 +35,17 @@ Result<void> plausible(const JointProblem& problem, const JointState& state) {
               "the sphere");
   }
   return {};
+}
+
+/// Poses that a reading had turned which is left out now begin at the table's angles again: from where they
+/// are they would not come back, and their angles would be taken for the table's error.
+void turn_back(const JointProblem& problem, const Outliers& outliers, JointState& state) {
+  const auto attitude_row = static_cast<std::size_t>(problem.channels()) + 1;
+  for (std::size_t k = 0; k < outliers.rows().size(); ++k) {
+    const Rows& rows = outliers.rows()[k];
+    if (rows.any() && !rows[attitude_row] && is_turned(problem.poses[k], state.nuisances[k]))
+      state.nuisances[k] = at_the_table(problem.poses[k], state);
+  }
 }
 
 /// Fits, weighs anew and leaves out in turn until nothing moves. `unsettled` tells that no more than that
@@ -73,6 +85,7 @@ Result<RobustFit> weighed(JointProblem& problem, JointState state, const FitNois
       return out;
     }
     const bool judged = out.outliers.judge(problem, found, out.residuals);
+    turn_back(problem, out.outliers, found);
     bool moved = noise.update(out.residuals, problem);
     moved = set_memory_variance(problem, found, noise.table_sd_rad) || moved;
     if (moved && !judged) {
@@ -127,6 +140,7 @@ std::optional<RobustFit> from_some(JointProblem& problem, const std::vector<Eige
   refit_nuisances(problem, state);
   Outliers outliers(most_left_out);
   outliers.judge(problem, state, pose_residuals(problem, state));
+  turn_back(problem, outliers, state);
   auto out = weighed(problem, std::move(state), first->noise, std::move(outliers), unsettled);
   if (!out) return std::nullopt;
   out->rounds += first->rounds;
@@ -217,6 +231,9 @@ RobustFit without_stretches(JointProblem& problem, RobustFit fit, double most_le
   return without;
 }
 
+/// Of the field: no law that a model misses leaves as much, but a fit that a gross reading has drawn away.
+constexpr double kLost = 0.01;
+
 /// The better of the fits from all poses and from those that agree.
 Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, double f_nT,
                               const FitNoise& noise, double most_left_out, bool& unsettled) {
@@ -232,7 +249,8 @@ Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, d
       plain = weighed(problem, *std::move(start), noise, Outliers(most_left_out), unsettled);
     }
   }
-  const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0;
+  const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0 ||
+                          plain->residuals.residual_nT() > kLost * f_nT;
   if (most_left_out <= 0 || (!suspicious && !looks_spoilt(all.y_nT))) return plain;
   auto agreed = from_agreeing(other, all, f_nT, noise, most_left_out);
   if (!agreed) return plain;

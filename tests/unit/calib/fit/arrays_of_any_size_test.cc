@@ -177,6 +177,27 @@ TEST(ArraysOfAnySize, CleanRunsPassAndAHiddenLawIsNamed) {
   }
 }
 
+/// A gross reading can draw the attitude of its pose half a turn away, and the whole fit with it; other
+/// sensors of the pose, which would say so, are not there.
+TEST(ArraysOfAnySize, OneSensorLosesNoMoreThanTheGrossReading) {
+  const PoseTable clean = testing::turned_run(testing::one_sensor(), 1);
+  struct Gross {
+    std::size_t pose;
+    int axis;
+    double shift_nT;
+  };
+  for (const Gross& gross :
+       {Gross{1, 0, 2e5}, {1, 2, -1.2e5}, {1, 0, 9.9e6}, {130, 2, 9.9e6}, {130, 2, -9.9e6}}) {
+    PoseTable table = clean;
+    table.poses[gross.pose - 1].y_nT[0][gross.axis] += gross.shift_nT;
+    const fit::FitReport report = fitted(table, testing::one_sensor());
+    EXPECT_TRUE(report.calibration.accepted_by_checks) << gross.pose << ", " << gross.shift_nT;
+    ASSERT_EQ(report.outliers.size(), 1U) << gross.pose << ", " << gross.shift_nT;
+    EXPECT_EQ(report.outliers.front().where, fmt::format("s1.{}", "xyz"[gross.axis]));
+    EXPECT_LT(report.residual_nT, 2 * report.noise_nT);
+  }
+}
+
 PoseTable in_a_cage(const std::string& more, std::uint64_t seed) {
   const auto scenario = testing::scenario_of(
       testing::one_sensor(), seed,
