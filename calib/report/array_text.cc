@@ -16,12 +16,6 @@ using calibration::FieldExpansion;
 
 constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
 
-std::string point_text(const Eigen::Vector3d& r) {
-  // Adding zero makes a negative zero positive.
-  const auto rounded = [](double x) { return std::round(x * 1e4) / 1e4 + 0.0; };
-  return fmt::format("({:g}, {:g}, {:g})", rounded(r.x()), rounded(r.y()), rounded(r.z()));
-}
-
 /// "s1", "s1 and s2", "s1 to s5"
 std::string all_sensors(const FieldExpansion& array) {
   if (array.sensors() == 1) return "s1";
@@ -130,6 +124,12 @@ std::string closure_clause(const FieldExpansion& array) {
 }
 
 }  // namespace
+
+std::string point_text(const Eigen::Vector3d& r, double step) {
+  // Adding zero makes a negative zero positive.
+  const auto rounded = [step](double x) { return std::round(x / step) * step + 0.0; };
+  return fmt::format("({:g}, {:g}, {:g})", rounded(r.x()), rounded(r.y()), rounded(r.z()));
+}
 
 std::string what_it_tells(const FieldExpansion& array) {
   std::vector<std::string> clauses;

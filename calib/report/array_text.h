@@ -16,4 +16,7 @@ namespace mgtd::calib::report {
 ///     closure numbers check every sample (1 for a curl, 3 for a change that is not linear)
 [[nodiscard]] std::string what_it_tells(const calibration::FieldExpansion& array);
 
+/// "(0.2, 0, -0.2)": a place or a direction, rounded to multiples of `step`.
+[[nodiscard]] std::string point_text(const Eigen::Vector3d& r, double step = 1e-4);
+
 }  // namespace mgtd::calib::report

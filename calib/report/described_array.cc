@@ -33,4 +33,16 @@ std::string array_name(const sensor::Geometry& array) {
   return array.sensors() == 1 ? "one sensor" : fmt::format("an array of {} sensors", array.sensors());
 }
 
+std::pair<std::string, std::string> names_apart(const sensor::Geometry& a, const sensor::Geometry& b) {
+  std::pair<std::string, std::string> out{array_name(a), array_name(b)};
+  if (out.first != out.second) return out;
+  constexpr double kRounded_m = 1e-6;
+  const auto &own = a.positions_P_m(), &other = b.positions_P_m();
+  std::size_t i = 0;
+  while (i + 1 < own.size() && (own[i] - other[i]).norm() <= kRounded_m) ++i;
+  out.first += fmt::format(" with s{} at {} m", i + 1, point_text(own[i], kRounded_m));
+  out.second += fmt::format(" with s{} at {} m", i + 1, point_text(other[i], kRounded_m));
+  return out;
+}
+
 }  // namespace mgtd::calib::report

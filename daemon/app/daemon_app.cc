@@ -152,10 +152,10 @@ void DaemonApp::use_active_calibration() {
   if (!active) {
     spdlog::error("the active calibration cannot be read, streaming raw: {}", active.error().text());
   } else if (*active && !(*active)->geometry.agrees_with(config_.geometry())) {
+    const auto [its, own] = calib::report::names_apart((*active)->geometry, config_.geometry());
     spdlog::error(
         "calibration {} is of {}, this rig is {}: streaming raw; measure a run and accept its calibration",
-        (*active)->id, calib::report::array_name((*active)->geometry),
-        calib::report::array_name(config_.geometry()));
+        (*active)->id, its, own);
   } else if (*active) {
     spdlog::info("calibration {} is active", (*active)->id);
     used = std::make_shared<const calib::calibration::Calibration>(**std::move(active));

@@ -195,10 +195,9 @@ Reply DaemonApp::import_calibration(const ControlRequest& request) {
   const auto calibration = calib::calibration::calibration_from_json(wanted->calibration);
   if (!calibration) return tl::unexpected(calibration.error());
   if (!calibration->geometry.agrees_with(config_.geometry())) {
+    const auto [its, own] = calib::report::names_apart(calibration->geometry, config_.geometry());
     return fail(ErrorCode::refused,
-                fmt::format("calibration {} is of {}, this rig is {}", calibration->id,
-                            calib::report::array_name(calibration->geometry),
-                            calib::report::array_name(config_.geometry())),
+                fmt::format("calibration {} is of {}, this rig is {}", calibration->id, its, own),
                 "fit again with --baseline or --array, or correct [rig] baseline_m or [array] of the "
                 "configuration");
   }
