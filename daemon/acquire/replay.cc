@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "calib/report/described_array.h"
 #include "daemon/acquire/instruments.h"
 #include "proto/stream_codec.h"
 
@@ -156,7 +157,9 @@ Result<void> Replay::on(const LifeNote& note) {
   SamplerConfig sampler = sampler_config(life_->config);
   sampler.first_seq = note.first_seq;
   life_->pipeline = LivePipeline(sampler, life_->config.geometry(), inputs_of(life_->config));
-  if (instead_ != nullptr) life_->pipeline.use(instead_);
+  if (instead_ != nullptr) {
+    if (auto used = use(instead_); !used) return used;
+  }
   if (note.before) say(*note.before);
   return {};
 }
@@ -169,7 +172,20 @@ Result<void> Replay::on(const CalibrationNote& note) {
   }
   auto calibration = calib::calibration::calibration_from_json_text(note.json);
   if (!calibration) return tl::unexpected(calibration.error());
-  life_->pipeline.use(std::make_shared<const calib::calibration::Calibration>(*std::move(calibration)));
+  return use(std::make_shared<const calib::calibration::Calibration>(*std::move(calibration)));
+}
+
+Result<void> Replay::use(std::shared_ptr<const calib::calibration::Calibration> calibration) {
+  const calib::sensor::Geometry recorded = life_->config.geometry();
+  if (!calibration->geometry.agrees_with(recorded)) {
+    const auto [its, own] = calib::report::names_apart(calibration->geometry, recorded);
+    return fail(
+        ErrorCode::bad_input,
+        fmt::format("calibration {} is of {}, the journal was recorded by {}", calibration->id, its, own),
+        "name a calibration of the array that was recorded; where the array was changed, replay the "
+        "files before and after separately");
+  }
+  life_->pipeline.use(std::move(calibration));
   return {};
 }
 

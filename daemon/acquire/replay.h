@@ -37,7 +37,7 @@ class Replay {
          std::shared_ptr<const calib::calibration::Calibration> instead);
   ~Replay();
 
-  /// Refuses what cannot be replayed.
+  /// Refuses what cannot be replayed, and a calibration of another array than the one that was recorded.
   [[nodiscard]] Result<void> feed(const RawRecord& record);
   [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
 
@@ -52,6 +52,7 @@ class Replay {
   [[nodiscard]] Result<void> on(const TableOrder& order);
   [[nodiscard]] Result<void> on(const TableNote& table);
   [[nodiscard]] Result<void> on(const LostNote& lost);
+  [[nodiscard]] Result<void> use(std::shared_ptr<const calib::calibration::Calibration> calibration);
   void tell_device(const RawRecord& record);
   void check_sent(const RawRecord& record);
   void take_events(std::uint8_t number);

@@ -166,6 +166,31 @@ TEST(Replay, AJournalThatWasTouchedIsNoticed) {
   EXPECT_THAT(*again.counts.parted, ::testing::HasSubstr("s2"));
 }
 
+/// Fed until it refuses.
+Error refusal(const std::string& journal, std::shared_ptr<const calib::calibration::Calibration> instead) {
+  acquire::Replay again([](std::string_view) {}, std::move(instead));
+  RawLogDecoder decoder;
+  decoder.feed(journal);
+  while (const auto record = decoder.next())
+    if (auto fed = again.feed(*record); !fed) return fed.error();
+  return {ErrorCode::internal, "nothing was refused", {}};
+}
+
+TEST(Replay, RefusesACalibrationOfAnotherArray) {
+  Recorded live(table6());
+  live.daemon.run(5);
+  calib::calibration::Calibration two = *perfect_calibration(table6());
+  two.geometry = calib::sensor::Geometry(PerSensor<Eigen::Vector3d>{{0.2, 0, 0}, {-0.2, 0, 0}});
+  two.sensors.resize(2);
+  EXPECT_THAT(refusal(live.journal, std::make_shared<const calib::calibration::Calibration>(two)).message,
+              ::testing::HasSubstr(
+                  "an array of 2 sensors, the journal was recorded by the cross of four sensors, 0.4 m"));
+  calib::calibration::Calibration wider = *perfect_calibration(table6());
+  wider.geometry = calib::sensor::Geometry(0.6);
+  EXPECT_THAT(refusal(live.journal, std::make_shared<const calib::calibration::Calibration>(wider)).message,
+              ::testing::HasSubstr("0.6 m from arm to arm"));
+}
+
 TEST(Replay, RefusesWhatHasNoBeginning) {
   Recorded live(table6());
   live.daemon.run(1);
