@@ -16,16 +16,16 @@ namespace {
 
 using Distances = Eigen::ArrayXXd;
 
-/// Of each sensor's field from the middle two of the four, by component, nT.
+/// Of each sensor's field from the middle of all, by component, nT.
 Distances distances(const FieldTable& b_nT) {
   Distances out = Distances::Zero(b_nT.rows() / 3, b_nT.cols());
+  PerSensor<double> values(static_cast<std::size_t>(out.rows()));
   for (Eigen::Index k = 0; k < b_nT.cols(); ++k) {
     for (int a = 0; a < 3; ++a) {
-      PerSensor<double> values(static_cast<std::size_t>(out.rows()));
       for (Eigen::Index i = 0; i < out.rows(); ++i)
         values.at(static_cast<std::size_t>(i)) = b_nT(3 * i + a, k);
       std::sort(values.begin(), values.end());
-      const double middle = 0.5 * (values[1] + values[2]);
+      const double middle = 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
       for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, k) += std::pow(b_nT(3 * i + a, k) - middle, 2);
     }
   }
@@ -52,6 +52,7 @@ AgreeingReadings agreeing_readings(const Readings& readings) {
 
 std::vector<OutlierNode> left_out_nodes(const Readings& readings, const AgreeingReadings& agreeing,
                                         const TwoStep& fitted) {
+  if (agreeing.left_out.empty()) return {};
   constexpr double kFar = 10;  // times what the poses kept show
   const Distances kept = distances(corrected_fields(agreeing.kept, fitted.sensors));
   const Distances all = distances(corrected_fields(readings, fitted.sensors));

@@ -16,7 +16,7 @@ struct AgreeingReadings {
 };
 [[nodiscard]] AgreeingReadings agreeing_readings(const Readings& readings);
 
-/// What of the poses left out contradicts a calibration: the sensor that the other three contradict, or the
+/// What of the poses left out contradicts a calibration: the sensor that the others contradict, or the
 /// pose.
 [[nodiscard]] std::vector<OutlierNode> left_out_nodes(const Readings& readings,
                                                       const AgreeingReadings& agreeing,

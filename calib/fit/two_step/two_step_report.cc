@@ -134,9 +134,11 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
   report.noise_known = (readings.pose_noise_nT.array() > 0).all();
   const FieldTable b = corrected_fields(readings, fitted.sensors);
   report.chi2 = field_chi2(b, readings, fitted.sensors, c.pose_noise_nT);
-  report.summary = {.termination = Termination::closed_form,
-                    .initial_cost = field_chi2(raw_fields(readings), readings, {}, c.pose_noise_nT),
-                    .final_cost = report.chi2};
+  report.summary = {
+      .termination = Termination::closed_form,
+      .initial_cost = field_chi2(raw_fields(readings), readings,
+                                 PerSensor<sensor::SensorModel>(fitted.sensors.size()), c.pose_noise_nT),
+      .final_cost = report.chi2};
   report.dof = static_cast<double>(static_cast<Eigen::Index>(readings.y_nT.size()) * (readings.poses() - 9));
   const Influence spread = influence(readings, options, fitted, effective);
   c.covariance = spread.covariance;

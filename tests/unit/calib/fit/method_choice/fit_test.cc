@@ -7,6 +7,7 @@
 
 #include "calib/report/fit_reasons.h"
 #include "tests/support/paper_rigs.h"
+#include "tests/unit/calib/fit/fitted_arrays.h"
 
 namespace mgtd::calib::fit {
 namespace {
@@ -94,6 +95,45 @@ TEST(TwoStepFit, FindsTheTableFrameFromTiltedPosesWithinItsUncertainty) {
   }
   ASSERT_TRUE(report->held_out);
   ASSERT_TRUE(report->halves);
+}
+
+/// The cost before the fit is that of all sensors, however many.
+TEST(TwoStepFit, TakesAnyNumberOfSensors) {
+  for (const calib::testing::Places& places :
+       {calib::testing::one_sensor(), calib::testing::two_along_x(), calib::testing::cube_of_eight()}) {
+    const PoseTable table = calib::testing::turned_run(places, 3);
+    for (const Method method : {Method::two_step, Method::simplified}) {
+      FitOptions options = calib::testing::options_of(places);
+      options.method = method;
+      const auto report = method_choice::fit(table, options);
+      ASSERT_TRUE(report) << places.size() << ": " << report.error().text();
+      const calibration::Calibration& c = report->calibration;
+      ASSERT_EQ(c.sensors.size(), places.size());
+      const double n = static_cast<double>(c.poses);
+      double cost = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const double variance = c.pose_noise_nT.row(static_cast<Eigen::Index>(i)).squaredNorm() / 3;
+        cost += n * std::pow(report->before.total_field_rmse_nT[i], 2) / variance;
+      }
+      EXPECT_NEAR(report->summary.initial_cost / cost, 1, 0.2) << places.size();
+    }
+  }
+}
+
+/// The sensor that the others contradict is named; of two either may be wrong, and one has nobody beside it.
+TEST(TwoStepFit, OfAnyNumberOfSensorsTheOneThatIsWrongIsNamed) {
+  const std::vector<std::pair<calib::testing::Places, std::string>> arrays{
+      {calib::testing::two_along_x(), "pose"}, {calib::testing::cube_of_eight(), "s8"}};
+  for (const auto& [places, where] : arrays) {
+    PoseTable table = calib::testing::turned_run(places, 3);
+    for (std::size_t k = 40; k < 60; ++k) table.poses[k].y_nT.back() *= 1.3;
+    FitOptions options = calib::testing::options_of(places);
+    options.method = Method::two_step;
+    const auto report = method_choice::fit(table, options);
+    ASSERT_TRUE(report) << where << ": " << report.error().text();
+    ASSERT_EQ(report->outliers.size(), 20U) << where;
+    for (const OutlierNode& node : report->outliers) EXPECT_EQ(node.where, where) << node.pose;
+  }
 }
 
 TEST(TwoStepFit, PosesAboutOneAxisAreRefused) {
