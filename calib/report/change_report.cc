@@ -11,6 +11,7 @@
 #include "calib/report/column_blocks.h"
 #include "calib/report/json_number.h"
 #include "calib/stats/probability.h"
+#include "proto/units.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -70,15 +71,24 @@ std::string named_text(const validity::Change& change) {
   return out;
 }
 
+std::string turn_text(const validity::CommonTurn& turn) {
+  std::string out = "turn of the whole array, which is no change of its calibration:";
+  for (int axis = 0; axis < 3; ++axis) {
+    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.about_rad[axis]),
+                       to_deg(turn.sd_rad[axis]));
+  }
+  return out + " deg about X, Y, Z";
+}
+
 std::string change_table(const validity::Change& change, std::size_t rows, std::size_t width) {
   const PerSensor<double>& others = change.others_log10_p;
   std::string out =
       others.size() == 1
-          ? "alpha, beta and gamma are left out: one sensor does not tell them from a turn of the whole array"
-          : "were it one sensor that changed, would the others be as they were?";
+          ? "alpha, beta and gamma are not judged: of one sensor they are the turn of the whole array"
+          : "if only this sensor had changed, would the others still agree?";
   for (std::size_t i = 0; others.size() > 1 && i < others.size(); ++i)
     out += fmt::format("   s{} {}", i + 1, stats::p_phrase(others[i]));
-  std::vector<NamedRow> table{{"as if it alone changed", {"by", "sd", "sigmas", "smallest to be seen"}}};
+  std::vector<NamedRow> table{{"if only it had changed", {"by", "sd", "sigmas", "smallest to be seen"}}};
   for (std::size_t j = 0; j < std::min(rows, change.parameters.size()); ++j) {
     const validity::ParameterChange& p = change.parameters[j];
     table.push_back(

@@ -21,6 +21,8 @@ namespace mgtd::calib::report {
 /// By sensor whether its change alone would do, then the `rows` parameters that differ most.
 [[nodiscard]] std::string change_table(const validity::Change& change, std::size_t rows,
                                        std::size_t width = kAnyWidth);
+/// "turn of the whole array, which is no change of its calibration: -0.5000 ± 0.0002, ... deg about X, Y, Z"
+[[nodiscard]] std::string turn_text(const validity::CommonTurn& turn);
 /// Smallest change that would be found in 80 of 100 cases, worst over the sensors, by kind of parameter.
 [[nodiscard]] std::string seen_text(const validity::Change& change);
 

@@ -4,21 +4,8 @@
 #include <fmt/format.h>
 
 #include "calib/report/change_report.h"
-#include "proto/units.h"
 
 namespace mgtd::calib::report {
-namespace {
-
-std::string turn_text(const validity::CommonTurn& turn) {
-  std::string out = "turn of the whole array on its table, which is no change of it:";
-  for (int axis = 0; axis < 3; ++axis) {
-    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.about_rad[axis]),
-                       to_deg(turn.sd_rad[axis]));
-  }
-  return out + " deg about X, Y, Z";
-}
-
-}  // namespace
 
 std::string conclusion_text(const validity::DiffReport& report) {
   const validity::Change& c = report.change;

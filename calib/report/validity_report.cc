@@ -45,6 +45,7 @@ std::vector<std::string> validity_reasons(const validity::ValidityReport& r) {
   if (r.excess > 1 && r.valid) {
     out.push_back(
         fmt::format("the poses scatter {:.2f} times more than the noise; the test allows for it", r.excess));
+  if (r.turn) out.push_back(turn_text(*r.turn));
   }
   if (!r.noise_from_dwells)
     out.emplace_back("the noise is that of the calibration's own run: the poses have no spreads or counts");

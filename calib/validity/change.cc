@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -109,10 +110,9 @@ std::vector<ParameterChange> named_changes(const Evidence& e, const Eigen::Matri
 /// The difference with the common freedoms fitted and taken out, and its covariance.
 std::pair<Eigen::VectorXd, Eigen::MatrixXd> without_common(const Evidence& e) {
   if (e.common.cols() == 0) return {e.difference, e.covariance};
-  const Eigen::MatrixXd WX = inverse_of(e.covariance).W * e.common;
-  const Eigen::MatrixXd C = inverse_of(e.common.transpose() * WX).W;
-  return {e.difference - e.common * (C * (WX.transpose() * e.difference)),
-          e.covariance - e.common * C * e.common.transpose()};
+  const CommonPart common = common_part(e);
+  return {e.difference - e.common * common.size,
+          e.covariance - e.common * common.covariance * e.common.transpose()};
 }
 
 /// What is left when one sensor may have changed in any way.
@@ -201,6 +201,17 @@ Eigen::MatrixXd common_freedoms(const PerSensor<sensor::SensorModel>& sensors, E
     if (free_scale) out.block<3, 1>(at + sensor::cx, 3) = sensors[i].scale;
   }
   return out;
+}
+
+CommonTurn common_turn(const Eigen::Matrix3d& Q, const Eigen::Vector3d& sd_rad) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(Q.transpose()));  // the angles of the sensors are passive
+  return {turn.angle() * turn.axis(), sd_rad};
+}
+
+CommonPart common_part(const Evidence& e) {
+  const Eigen::MatrixXd WX = inverse_of(e.covariance).W * e.common;
+  const Eigen::MatrixXd C = inverse_of(e.common.transpose() * WX).W;
+  return {C * (WX.transpose() * e.difference), C};
 }
 
 Change judge(const Evidence& e) {

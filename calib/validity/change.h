@@ -82,6 +82,21 @@ struct Evidence {
   std::size_t sensors{kSensorCount};
 };
 
+/// A turn of the whole array on its table or in its cage, which is no change of the array: rotation vector in
+/// the platform frame, in the sense of alpha, beta and gamma, and its standard deviation, about X, Y and Z.
+struct CommonTurn {
+  Eigen::Vector3d about_rad{Eigen::Vector3d::Zero()}, sd_rad{Eigen::Vector3d::Zero()};
+};
+/// Q turns the platform frame: b_P of before becomes Q b_P.
+[[nodiscard]] CommonTurn common_turn(const Eigen::Matrix3d& Q, const Eigen::Vector3d& sd_rad);
+
+/// The common freedoms that fit the difference best, and their covariance.
+struct CommonPart {
+  Eigen::VectorXd size;
+  Eigen::MatrixXd covariance;
+};
+[[nodiscard]] CommonPart common_part(const Evidence& evidence);
+
 /// Likelihood ratios, with the common freedoms projected out. Directions in which the covariance vanishes (a
 /// convention both sides share) carry no evidence.
 [[nodiscard]] Change judge(const Evidence& evidence);

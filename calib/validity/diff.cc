@@ -69,7 +69,7 @@ std::vector<calibration::CalibratedEffect> shared_effects(const calibration::Cal
 
 /// The rotation that brings the platform frame of b onto that of a, as most of the sensors see it: one that
 /// was turned by itself or rewired does not count.
-Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration::Calibration& b) {
+Eigen::Matrix3d turn_back(const calibration::Calibration& a, const calibration::Calibration& b) {
   constexpr double kTogether_rad = 5 * kRadiansPerDegree;
   PerSensor<Eigen::Matrix3d> each(a.sensors.size());
   for (std::size_t i = 0; i < each.size(); ++i)
@@ -93,10 +93,9 @@ Eigen::Matrix3d common_turn(const calibration::Calibration& a, const calibration
   return fit::nearest_orthogonal(sum, false);
 }
 
-/// The turn of the platform frame, with the uncertainty of the mean of the sensors.
-CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance, int sensors) {
-  const Eigen::AngleAxisd turn(Q);
-  CommonTurn out;
+/// Of the mean of the sensors, about X, Y and Z.
+Eigen::Vector3d turn_sd_rad(const Eigen::MatrixXd& covariance, int sensors) {
+  Eigen::Vector3d out;
   for (int axis = 0; axis < 3; ++axis) {
     double variance = 0;
     for (int i = 0; i < sensors; ++i) {
@@ -106,8 +105,7 @@ CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance, 
                     (sensors * sensors);
       }
     }
-    out.about_rad[axis] = turn.angle() * turn.axis()[axis];
-    out.sd_rad[axis] = std::sqrt(variance);
+    out[axis] = std::sqrt(variance);
   }
   return out;
 }
@@ -117,7 +115,7 @@ CommonTurn turn_of(const Eigen::Matrix3d& Q, const Eigen::MatrixXd& covariance, 
 DiffReport diff(const calibration::Calibration& a, const calibration::Calibration& b) {
   DiffReport out;
   const auto shared = shared_effects(a, b, out);
-  const Eigen::Matrix3d Q = common_turn(a, b);
+  const Eigen::Matrix3d Q = turn_back(a, b);
   const TurnedArray placed = turned(b.sensors, Q);
   for (std::size_t i = 0; i < a.sensors.size(); ++i)
     if (a.sensors[i].mounting != placed.sensors[i].mounting) out.remounted.push_back(i);
@@ -136,7 +134,7 @@ DiffReport diff(const calibration::Calibration& a, const calibration::Calibratio
                       .slots = shown_slots(a.sensors.size(), shared),
                       .sensors = a.sensors.size()});
   out.changed = !out.remounted.empty() || out.change.p() < kChanged;
-  out.turn = turn_of(Q, C, static_cast<int>(a.sensors.size()));
+  out.turn = common_turn(Q.transpose(), turn_sd_rad(C, static_cast<int>(a.sensors.size())));
   return out;
 }
 

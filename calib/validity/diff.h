@@ -9,12 +9,6 @@
 /// errors.
 namespace mgtd::calib::validity {
 
-/// Turn of the whole array on its table from A to B, which is no change of the array: rotation vector in the
-/// platform frame and its standard deviation, about X, Y and Z.
-struct CommonTurn {
-  Eigen::Vector3d about_rad{Eigen::Vector3d::Zero()}, sd_rad{Eigen::Vector3d::Zero()};
-};
-
 struct DiffReport {
   bool changed{false};  ///< no change has a probability below kChanged, or a sensor was remounted
   Change change;        ///< B less A, common rotation (and a free common scale) taken out
@@ -22,7 +16,7 @@ struct DiffReport {
   /// Effects that only one of them has; they are not compared.
   std::vector<std::string> only_in_first, only_in_second;
   bool scale_taken_out{false};  ///< a common scale, because one of them knows no field
-  CommonTurn turn;
+  CommonTurn turn;              ///< from A to B
 };
 
 /// Effects that both have are compared too. A sensor whose mounting differs counts as changed.

@@ -16,6 +16,7 @@
 #include "calib/linear/symmetric_eigen.h"
 #include "calib/poses/run_time.h"
 #include "calib/stats/chi_square.h"
+#include "calib/sensor/sensor_equations.h"
 #include "calib/validity/fixed_calibration.h"
 #include "calib/validity/restricted_fit.h"
 
@@ -160,6 +161,15 @@ Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::Sen
 }
 
 double rms_noise(const fit::joint::JointProblem& problem) {
+/// The turn Q by which the array was placed, and what is left of it.
+std::optional<CommonTurn> turn_of(const fit::joint::JointProblem& problem, const Eigen::Matrix3d& Q,
+                                  const Evidence& evidence) {
+  if (!problem.platform_reference() || evidence.common.cols() != 3) return std::nullopt;
+  const CommonPart rest = common_part(evidence);
+  const Eigen::Vector3d small = rest.size;
+  return common_turn(sensor::turn_by<double>(small) * Q, rest.covariance.diagonal().cwiseSqrt());
+}
+
   double variance = 0;
   for (const fit::joint::JointPose& pose : problem.poses)
     variance += sensor::over_channels(pose.weight.size(), [&](auto n) {
@@ -242,7 +252,9 @@ Result<ValidityReport> check(const calibration::Calibration& calibration, const 
   frozen->covariance *= factor;
   const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
-  report.change = judge(evidence_of(*frozen, state.sensors, score, seen, noise, free_scale));
+  const Evidence evidence = evidence_of(*frozen, state.sensors, score, seen, noise, free_scale);
+  report.change = judge(evidence);
+  report.turn = turn_of(problem, settled->placed.Q, evidence);
   const fit::joint::JointErrors errors =
       fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen);
   report.errors = errors.summary;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+#include <vector>
+
 #include "calib/fit/method_choice/fit.h"
 #include "calib/validity/change.h"
 
@@ -24,6 +27,7 @@ struct ValidityReport {
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run
   std::vector<fit::OutlierNode> outliers;
 
+  std::optional<CommonTurn> turn;  ///< since the calibration; where a vector reference tells it
   /// Whether a parameter of the calibration changed; a calibration that did not change is still not valid
   /// where the poses scatter too much.
   [[nodiscard]] bool changed() const { return change.p() < kChanged; }

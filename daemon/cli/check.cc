@@ -16,10 +16,10 @@ namespace {
 
 constexpr const char* kCheckHelp =
     R"(A dozen poses in different attitudes suffice; table angles are not needed unless the calibration holds an
-effect of the site, platform or table. The whole array may have been mounted again, and elsewhere. The answer
-weighs both the noise of these poses and the uncertainty of the calibration: an unchanged rig is called
-changed in about one case of a hundred. Printed beside it: the smallest change that would have been seen, and
-which sensor and parameter moved.
+effect of the site, platform or table. The whole array may have been mounted again, and elsewhere; where the
+reference is a vector, the answer says how the array is turned since. It weighs both the noise of these poses
+and the uncertainty of the calibration: an unchanged rig is called changed in about one case of a hundred.
+Printed beside it: the smallest change that would have been seen, and which sensor and parameter moved.
 
   mgt check cal.json dozen.csv && echo go on
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr const char* kDiffHelp =
     R"(Both runs are fitted with the same options (or taken as they are when a file is a CAL.json) and compared with
-the uncertainty of both. A turn of the whole array on its table is taken out first: it is no change of the
-array. The answer allows for the number of parameters looked at: two runs of an unchanged rig are called
-different in about one case of a hundred. Effects that both have are compared too.
+the uncertainty of both. A turn of the whole array, on its table or in its coil cage, is taken out first: it
+is no change of the array. The answer allows for the number of parameters looked at: two runs of an unchanged
+rig are called different in about one case of a hundred. Effects that both have are compared too.
 
   mgt diff monday.mgtrun friday.mgtrun --with site.gradient
 

@@ -177,7 +177,19 @@ Placement beside_table(const ReferencePlacement& placement, const JointProblem& 
   return {placement.Q, placement.R_SR * mean_reference(problem), placement.R_SR};
 }
 
+/// Turns the sensors to a reference that turns with them. Turns about a direction that all vectors share are
+/// left alone.
+Placement beside_reference(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < u.size(); ++k)
+    if (problem.poses[k].reference_weight > 0) H += problem.poses[k].reference_nT * u[k].transpose();
+  constexpr double kLeft = 1e-6;
+  H.diagonal().array() += kLeft * H.norm();
+  return {nearest_orthogonal(H, true), {0, 0, 1}, Eigen::Matrix3d::Identity()};
+}
+
 Result<Placement> best_placement(const JointProblem& problem, const std::vector<Eigen::Vector3d>& u) {
+  if (problem.platform_reference()) return beside_reference(problem, u);
   Placement p;
   const AngleCoverage coverage = angle_coverage(problem);
   if (coverage != AngleCoverage::none && problem.site_reference()) {

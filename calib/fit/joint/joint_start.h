@@ -30,8 +30,8 @@ enum class AngleCoverage { none, one_axis, full };
 [[nodiscard]] JointState joint_state(const JointProblem& problem, const JointState& from);
 
 /// The same around sensors of an earlier calibration that may stand turned on the table since: they are
-/// turned together by the rotation Q that brings them to these poses' angles (identity without angles).
-/// Refuses a vector reference that turns with the table.
+/// turned together by the rotation Q that brings them to these poses' angles, or to a reference that turns
+/// with them (identity without either). Refuses a reference beside the table that turns with it.
 struct PlacedState {
   JointState state;
   Eigen::Matrix3d Q{Eigen::Matrix3d::Identity()};

@@ -67,7 +67,7 @@ TEST(Diff, OneSensorTellsNothingOfItsTurn) {
   EXPECT_EQ(same.change.parameters.size(), 9U);
   for (const ParameterChange& p : same.change.parameters)
     EXPECT_LT(p.sd, p.unit == "deg" ? 0.01 : 1.0) << p.name;
-  EXPECT_THAT(report::change_table(same.change, 12), HasSubstr("alpha, beta and gamma are left out"));
+  EXPECT_THAT(report::change_table(same.change, 12), HasSubstr("alpha, beta and gamma are not judged"));
   Simulation later = rig();
   later.rig[0].offset_nT[1] += 5;
   const DiffReport moved = diff(alone(rig(), 31), alone(later, 32));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "calib/effects/library/library.h"
+#include "tests/unit/calib/fit/arrays_of_any_size.h"
 #include "tests/unit/calib/fit/simulated_poses.h"
 #include "tests/unit/calib/validity/first_sensor.h"
 
@@ -55,6 +56,36 @@ TEST(Check, OneSensorTellsNothingOfItsTurn) {
   EXPECT_TRUE(report->valid);
   EXPECT_EQ(report->change.parameters.size(), 9U);
   for (const ParameterChange& p : report->change.parameters) EXPECT_LT(p.seen, 100) << p.name;
+/// In a coil cage; the reference is turned against the holder of the sensors by these degrees about x, y, z.
+PoseTable in_a_cage(const testing::Places& places, const char* turned_deg, std::uint64_t seed) {
+  const auto scenario = testing::scenario_of(
+      places, 22,
+      fmt::format("[reference]\nvector = true\nsd_nT = 0.5\nmisalignment_deg = {}\n[cage]\nfields = "
+                  "\"sphere\"\nmax_nT = 65000\nposes = 60\n",
+                  turned_deg));
+  return rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, seed), seed);
+}
+
+TEST(Check, AnArrayThatIsTurnedInItsCageIsStillValidAndTheTurnIsStated) {
+  for (const testing::Places& places : {testing::one_sensor(), testing::tetrahedron()}) {
+    fit::FitOptions options;
+    options.geometry = testing::geometry_of(places);
+    const auto fitted = fit::method_choice::fit(in_a_cage(places, "[0.4, -0.3, 1.2]", 1), options);
+    ASSERT_TRUE(fitted) << fitted.error().text();
+    for (const auto& [turned_deg, about_x_deg] :
+         {std::pair{"[0.9, -0.3, 1.2]", -0.5}, {"[30.4, -0.3, 1.2]", -30.0}}) {
+      const auto report = check(fitted->calibration, in_a_cage(places, turned_deg, 2), {});
+      ASSERT_TRUE(report) << report.error().text();
+      EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
+      ASSERT_TRUE(report->turn);
+      EXPECT_LT(report->turn->sd_rad.maxCoeff(), to_rad(0.001));
+      EXPECT_NEAR(std::abs(to_deg(report->turn->about_rad.norm())), -about_x_deg, 0.002);
+      EXPECT_NEAR(to_deg(report->turn->about_rad.x()), about_x_deg, 0.02);
+      EXPECT_THAT(report::validity_reasons(*report)[2], HasSubstr("turn of the whole array"));
+    }
+  }
+}
+
   EXPECT_THAT(report::validity_reasons(*report)[1], HasSubstr("turn of a sensor not at all"));
 }
 
