@@ -98,17 +98,20 @@ figures::Figure waterfall_of(const criticism::search::Waterfall& w, std::optiona
                                           .first_share = {},
                                           .last_share = {},
                                           .held_out = held_out_nT},
-                             .tensor = {.unit = "nT/m",
-                                        .without = w.without_nT_per_m,
-                                        .with = w.with_nT_per_m,
-                                        .floor = w.floor_nT_per_m,
-                                        .first_share = {},
-                                        .last_share = {},
-                                        .held_out = {}}};
+                             .tensor = {}};
+  if (!std::isnan(w.without_nT_per_m))
+    v.tensor = {.unit = "nT/m",
+                .without = w.without_nT_per_m,
+                .with = w.with_nT_per_m,
+                .floor = w.floor_nT_per_m,
+                .first_share = {},
+                .last_share = {},
+                .held_out = {}};
   for (const auto& s : w.steps) {
     v.effects.push_back(s.spec.empty() ? s.effect : s.spec);
     v.residual.first_share.push_back(s.first_nT), v.residual.last_share.push_back(s.last_nT);
-    v.tensor.first_share.push_back(s.first_nT_per_m), v.tensor.last_share.push_back(s.last_nT_per_m);
+    if (!v.tensor) continue;
+    v.tensor->first_share.push_back(s.first_nT_per_m), v.tensor->last_share.push_back(s.last_nT_per_m);
   }
   return figures::waterfall_figure(v);
 }

@@ -156,12 +156,14 @@ std::string heading(const fit::FitReport& report) {
 
 }  // namespace
 
+bool tells_tensor(const fit::FitReport& report) {
+  return !std::isnan(calibration::root_mean_square(report.after.tensor_rmse_nT_per_m));
+}
+
 std::string rows_text(const fit::FitReport& report) {
-  std::string out =
-      "total field: |b| of each sensor less the F of its pose; tensor: what a uniform field leaves of it, "
-      "effects "
-      "of the "
-      "site that are in the model taken out";
+  std::string out = "total field: |b| of each sensor less the F of its pose";
+  if (tells_tensor(report))
+    out += "; tensor: what a uniform field leaves of it, effects of the site that are in the model taken out";
   std::vector<std::string> readings;
   for (const fit::OutlierNode& o : report.outliers)
     if (o.where != "angles")
@@ -177,7 +179,7 @@ std::string rows_text(const fit::FitReport& report) {
 
 std::string error_table(const fit::FitReport& report, std::size_t width) {
   const std::size_t sensors = report.calibration.sensors.size();
-  const bool tensor = !std::isnan(calibration::root_mean_square(report.after.tensor_rmse_nT_per_m));
+  const bool tensor = tells_tensor(report);
   const std::size_t needed = kStage + kFieldCell * sensors + (tensor ? 2 + 6 * kTensorCell : 0);
   const auto rows = error_rows(report);
   return (needed <= width ? error_table_in_one(rows, tensor) : error_table_in_two(rows, tensor, width)) +

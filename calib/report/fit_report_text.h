@@ -14,6 +14,8 @@ namespace mgtd::calib::report {
 
 /// The table of errors alone: a row per stage (before, simplified, step 1, after, held out, check poses).
 [[nodiscard]] std::string error_table(const fit::FitReport& report, std::size_t width = kAnyWidth);
+/// Whether the array determines any component of the tensor, so that there are errors of it to be shown.
+[[nodiscard]] bool tells_tensor(const fit::FitReport& report);
 /// What its rows are, and what none of them counts.
 [[nodiscard]] std::string rows_text(const fit::FitReport& report);
 

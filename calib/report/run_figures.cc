@@ -175,6 +175,7 @@ std::optional<figures::Figure> closure_figure(const PanelModel& model) {
 std::optional<figures::Figure> accuracy_of(const PoseTable& table, const fit::FitOptions& options,
                                            std::optional<double> wanted_nT_per_m) {
   if (table.poses.size() > kMostPosesForAccuracy || table.poses.empty()) return std::nullopt;
+  if (described(options.geometry).gradient.empty()) return std::nullopt;
   const bool timed =
       std::all_of(table.poses.begin(), table.poses.end(), [](const Pose& p) { return p.t_s.has_value(); });
   figures::AccuracyValues v{.x_label = timed ? "time since the start, min" : "poses",

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -45,11 +46,12 @@ std::string to_text(const criticism::search::Waterfall& w, std::size_t width) {
   const auto to = std::back_inserter(out);
   double top = w.without_nT;
   for (const criticism::search::WaterfallStep& s : w.steps) top = std::max({top, s.first_nT, s.last_nT});
+  const bool tensor = !std::isnan(w.without_nT_per_m);
   const auto total = [&](const char* what, double nT, double nT_per_m) {
-    fmt::format_to(to, "{:<40} {:>9.3f} {}  {}\n", what, nT, shown_number(nT_per_m, 9, 3),
+    fmt::format_to(to, "{:<40} {:>9.3f}{}  {}\n", what, nT, tensor ? " " + shown_number(nT_per_m, 9, 3) : "",
                    bar(nT, top, room));
   };
-  fmt::format_to(to, "{:<40} {:>9} {:>9}\n", "what each effect takes out", "nT", "nT/m");
+  fmt::format_to(to, "{:<40} {:>9}{}\n", "what each effect takes out", "nT", tensor ? "      nT/m" : "");
   total("without any effect", w.without_nT, w.without_nT_per_m);
   for (const criticism::search::WaterfallStep& s : w.steps) {
     fmt::format_to(to, "  {}\n", s.spec);
@@ -58,7 +60,9 @@ std::string to_text(const criticism::search::Waterfall& w, std::size_t width) {
   }
   total("with all of them", w.with_nT, w.with_nT_per_m);
   total("noise", w.floor_nT, w.floor_nT_per_m);
-  out += "nT: the residual; nT/m: error of the tensor, rms of its six components; parts add up in squares\n";
+  out += fmt::format(
+      "nT: the residual; {}parts add up in squares\n",
+      tensor ? "nT/m: error of the tensor, rms of the components that the array determines; " : "");
   return out;
 }
 

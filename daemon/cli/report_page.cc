@@ -19,6 +19,7 @@
 #include "calib/report/noise_text.h"
 #include "calib/report/outlier_text.h"
 #include "calib/report/residual_words.h"
+#include "calib/report/shown_number.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
 #include "daemon/cli/html.h"
@@ -29,8 +30,6 @@ namespace mgtd::daemon::cli {
 using calib::report::figures::escaped;
 
 namespace {
-
-std::string number(double x) { return fmt::format("{:.3f}", x); }
 
 std::string temperatures(const PoseTable& table) {
   double low = 1e9, high = -1e9;
@@ -46,11 +45,12 @@ std::string duration(const PoseTable& table) {
   return a && b ? fmt::format("{:.0f} minutes", (*b - *a) / 60) : "not recorded";
 }
 
-std::vector<std::string> error_row(const std::string& name, const calib::fit::ErrorSummary& e) {
+std::vector<std::string> error_row(const std::string& name, const calib::fit::ErrorSummary& e, bool tensor) {
   std::vector<std::string> out{name};
-  for (const double x : e.total_field_rmse_nT) out.push_back(number(x));
-  const Gradient& g = e.tensor_rmse_nT_per_m;
-  for (const double x : {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz}) out.push_back(number(x));
+  const auto add = [&](double x) { out.push_back(calib::report::shown_number(x, 0, 3)); };
+  for (const double x : e.total_field_rmse_nT) add(x);
+  if (!tensor) return out;
+  for (const double x : components(e.tensor_rmse_nT_per_m)) add(x);
   return out;
 }
 
@@ -158,18 +158,24 @@ std::string verdict_section(const ReportContent& c) {
 }
 
 std::string errors_section(const ReportContent& c) {
-  Rows rows{error_row("before", c.fit.before)};
-  if (c.fit.simplified) rows.push_back(error_row("simplified", *c.fit.simplified));
-  if (c.fit.two_step) rows.push_back(error_row("two-step", *c.fit.two_step));
-  rows.push_back(error_row("joint", c.fit.after));
-  if (c.fit.held_out) rows.push_back(error_row("poses left out", *c.fit.held_out));
-  if (c.fit.check_poses) rows.push_back(error_row("check poses", *c.fit.check_poses));
+  const bool tensor = calib::report::tells_tensor(c.fit);
+  Rows rows;
+  const auto add = [&](const char* name, const calib::fit::ErrorSummary& e) {
+    rows.push_back(error_row(name, e, tensor));
+  };
+  add("before", c.fit.before);
+  if (c.fit.simplified) add("simplified", *c.fit.simplified);
+  if (c.fit.two_step) add("two-step", *c.fit.two_step);
+  add("joint", c.fit.after);
+  if (c.fit.held_out) add("poses left out", *c.fit.held_out);
+  if (c.fit.check_poses) add("check poses", *c.fit.check_poses);
   std::vector<std::string> head{""};
   for (std::size_t i = 1; i <= c.fit.calibration.sensors.size(); ++i) head.push_back(fmt::format("s{}", i));
-  for (const char* g : {"xx", "yy", "zz", "xy", "xz", "yz"}) head.emplace_back(g);
-  return "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT and "
-         "nT/m; " +
-         escaped(calib::report::rows_text(c.fit)) + ".</p>" + html_table(head, rows, false) +
+  if (tensor) head.insert(head.end(), {"xx", "yy", "zz", "xy", "xz", "yz"});
+  return std::string(
+             "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT") +
+         (tensor ? " and nT/m; " : "; ") + escaped(calib::report::rows_text(c.fit)) + ".</p>" +
+         html_table(head, rows, false) +
          html_good(fmt::format(
              "the last rows agree with each other (nothing was overfitted) and lie near the noise of a "
              "pose mean, {:.3g} nT.",

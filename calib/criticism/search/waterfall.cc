@@ -17,8 +17,10 @@ ErrorLevel level_of(const fit::joint::JointErrors& e) {
   return {e.residual_nT, calibration::root_mean_square(e.summary.tensor_rmse_nT_per_m)};
 }
 
+/// NaN where either is.
 double beyond(double without, double with) {
-  return std::sqrt(std::max(0.0, without * without - with * with));
+  const double squares = without * without - with * with;
+  return squares < 0 ? 0 : std::sqrt(squares);
 }
 
 Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,

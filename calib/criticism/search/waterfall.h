@@ -10,7 +10,8 @@
 /// Errors of independent causes add in squares, so the share of one is sqrt(error without^2 - error with^2).
 /// Two orders: added first, to the twelve parameters of each sensor alone, and dropped last, from the whole
 /// model. They agree where effects have nothing in common; what two of them share counts in neither's
-/// "dropped last". Every fit has the weights of the whole model.
+/// "dropped last". Every fit has the weights of the whole model. Errors of the tensor are NaN where the array
+/// determines no component of it.
 namespace mgtd::calib::criticism::search {
 
 struct WaterfallStep {

@@ -79,17 +79,21 @@ std::string said(const FallValues& f) {
 
 DataTable table_of(const WaterfallValues& v) {
   DataTable out{.head = {"effect"}, .rows = {}, .note = "Shares add in squares."};
-  for (const FallValues* f : {&v.residual, &v.tensor})
+  std::vector<const FallValues*> errors{&v.residual};
+  if (v.tensor) errors.push_back(&*v.tensor);
+  for (const FallValues* f : errors)
     for (const char* order : {"added first", "dropped last"})
       out.head.push_back(fmt::format("{}, {}", order, f->unit));
   const auto level = [&](const std::string& name, double FallValues::*of) {
-    out.rows.push_back({name, short_number(v.residual.*of), "", short_number(v.tensor.*of), ""});
+    std::vector<std::string>& row = out.rows.emplace_back(std::vector<std::string>{name});
+    for (const FallValues* f : errors) row.insert(row.end(), {short_number(f->*of), ""});
   };
   level("error without any", &FallValues::without);
-  for (std::size_t i = 0; i < v.effects.size(); ++i)
-    out.rows.push_back({v.effects[i], short_number(v.residual.first_share[i]),
-                        short_number(v.residual.last_share[i]), short_number(v.tensor.first_share[i]),
-                        short_number(v.tensor.last_share[i])});
+  for (std::size_t i = 0; i < v.effects.size(); ++i) {
+    std::vector<std::string>& row = out.rows.emplace_back(std::vector<std::string>{v.effects[i]});
+    for (const FallValues* f : errors)
+      row.insert(row.end(), {short_number(f->first_share[i]), short_number(f->last_share[i])});
+  }
   level("error with all", &FallValues::with);
   level("noise", &FallValues::floor);
   return out;
@@ -101,17 +105,20 @@ Figure waterfall_figure(const WaterfallValues& v) {
   double label = 130;
   for (const std::string& e : v.effects) label = std::max(label, text_width(e, kFontSize) + 20);
   label = std::min(label, 270.0);
-  const std::vector<Fall> left = falls_of(v, v.residual), right = falls_of(v, v.tensor);
+  const std::vector<Fall> left = falls_of(v, v.residual);
   const double height = kRow * static_cast<double>(left.size()), each = (820 - label - 30) / 2;
   Drawing drawing("waterfall", 820, kHeadRoom + height + Plot::kBottom + 4);
   draw_falls(drawing, {label, kHeadRoom, each, height}, v.residual, left, true);
-  draw_falls(drawing, {label + each + 20, kHeadRoom, each, height}, v.tensor, right, false);
+  if (v.tensor)
+    draw_falls(drawing, {label + each + 20, kHeadRoom, each, height}, *v.tensor, falls_of(v, *v.tensor),
+               false);
   drawing.text({label, 27}, "residual of the readings", Anchor::start, Tone::ink, kFontSize, true);
-  drawing.text({label + each + 20, 27}, "error of the tensor", Anchor::start, Tone::ink, kFontSize, true);
+  if (v.tensor)
+    drawing.text({label + each + 20, 27}, "error of the tensor", Anchor::start, Tone::ink, kFontSize, true);
   std::vector<LegendEntry> legend{{.name = "added first", .tone = Tone::blue, .shape = Shape::square},
                                   {.name = "dropped last", .tone = Tone::vermilion, .shape = Shape::square},
                                   {.name = "noise", .tone = Tone::green, .line = true, .dash = "5 3"}};
-  if (v.residual.held_out || v.tensor.held_out)
+  if (v.residual.held_out || (v.tensor && v.tensor->held_out))
     legend.push_back({.name = "on poses left out", .tone = Tone::purple, .line = true, .dash = "1.5 2.5"});
   draw_legend(drawing, {label, 12}, legend, 820 - label);
   Figure out{

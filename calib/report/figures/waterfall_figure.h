@@ -7,10 +7,10 @@
 #include "calib/report/figures/figure.h"
 
 /// waterfall_figure() shows, on log axes, what each effect takes out of the error, down to the noise: of the
-/// readings (nT) and of the tensor (nT/m). Parts add in squares. Two bars for each effect: from the error
-/// without any effect to that with this one alone ("added first"), and from the error without this one to
-/// that with all ("dropped last"). Where the two differ in length, the effect shares what it explains with
-/// another.
+/// readings (nT) and of the tensor (nT/m), where the array determines any of it. Parts add in squares. Two
+/// bars for each effect: from the error without any effect to that with this one alone ("added first"), and
+/// from the error without this one to that with all ("dropped last"). Where the two differ in length, the
+/// effect shares what it explains with another.
 namespace mgtd::calib::report::figures {
 
 /// Parts of one error; each "share" is sqrt(error without^2 - error with^2).
@@ -23,7 +23,8 @@ struct FallValues {
 
 struct WaterfallValues {
   std::vector<std::string> effects{};
-  FallValues residual{}, tensor{};
+  FallValues residual{};
+  std::optional<FallValues> tensor{};
 };
 
 [[nodiscard]] Figure waterfall_figure(const WaterfallValues& values);

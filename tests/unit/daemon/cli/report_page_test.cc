@@ -9,13 +9,25 @@
 
 #include "calib/poses/pose_table.h"
 #include "tests/blind/hidden_run.h"
+#include "tests/unit/calib/fit/arrays_of_any_size.h"
 #include "tests/unit/daemon/temp_dir.h"
 
 namespace mgtd::daemon::cli {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+ReportContent content_of(const PoseTable& table, const std::filesystem::path& folder, ReportWishes wishes) {
+  wishes.run = (folder / "run.csv").string();
+  wishes.output = "report.html";
+  std::ofstream(wishes.run, std::ios::binary) << calib::poses::format_pose_table(table);
+  auto out = report_content(wishes, FitFlags{});
+  EXPECT_TRUE(out) << out.error().message;
+  return std::move(*out);
+}
 
 /// A run whose third sensor warms up, with a column of a hostile name.
 ReportContent content(const std::filesystem::path& folder, ReportWishes wishes = {}) {
@@ -25,12 +37,7 @@ ReportContent content(const std::filesystem::path& folder, ReportWishes wishes =
                     const Eigen::Vector3d&) { return i == 2 && a == 2 ? 0.5 * (*p.T_degC[2] - 20) : 0.0; }},
       5);
   for (Pose& pose : table.poses) pose.covariates["<script>"] = *pose.T_degC[2] * 0.1;
-  wishes.run = (folder / "run.csv").string();
-  wishes.output = "report.html";
-  std::ofstream(wishes.run, std::ios::binary) << calib::poses::format_pose_table(table);
-  auto out = report_content(wishes, FitFlags{});
-  EXPECT_TRUE(out) << out.error().message;
-  return std::move(*out);
+  return content_of(table, folder, std::move(wishes));
 }
 
 TEST(ReportPage, LoadsNothingAndRunsNothing) {
@@ -75,6 +82,19 @@ TEST(ReportPage, TellsWhichPosesAreMaskedAndWhy) {
   EXPECT_THAT(measured, HasSubstr("a car &lt;stood&gt; there"));
   EXPECT_THAT(measured, HasSubstr("door open"));
   EXPECT_THAT(history_section(c), HasSubstr("<td>a car</td>"));
+}
+
+/// What one sensor cannot tell is absent; what two on a line cannot tell is a dash.
+TEST(ReportPage, ShowsNoTensorThatTheArrayDoesNotDetermine) {
+  const test::TempDir folder;
+  ReportContent c =
+      content_of(calib::testing::turned_run(calib::testing::one_sensor(), 3), folder.path(), {});
+  EXPECT_THAT(errors_section(c), Not(AnyOf(HasSubstr("nan"), HasSubstr("nT/m"), HasSubstr("tensor"))));
+  EXPECT_THAT(report_page(c), Not(HasSubstr("The tensor's standard error")));
+  for (calib::fit::ErrorSummary* e : {&c.fit.before, &c.fit.after, &*c.fit.held_out})
+    e->tensor_rmse_nT_per_m.zz = 0.25;
+  EXPECT_THAT(errors_section(c),
+              AllOf(HasSubstr(">xx</th>"), HasSubstr("<td>-</td><td>0.250</td>"), Not(HasSubstr("nan"))));
 }
 
 TEST(ReportCommand, HoldsEveryOptionThatChangesTheResult) {

@@ -115,13 +115,13 @@ inline WaterfallValues waterfall_example() {
                        .first_share = {0.596, 0.11},
                        .last_share = {0.59, 0.1},
                        .held_out = 0.0205},
-          .tensor = {.unit = "nT/m",
-                     .without = 1.9,
-                     .with = 0.07,
-                     .floor = 0.066,
-                     .first_share = {1.88, 0.3},
-                     .last_share = {1.87, 0.27},
-                     .held_out = 0.081}};
+          .tensor = FallValues{.unit = "nT/m",
+                               .without = 1.9,
+                               .with = 0.07,
+                               .floor = 0.066,
+                               .first_share = {1.88, 0.3},
+                               .last_share = {1.87, 0.27},
+                               .held_out = 0.081}};
 }
 
 inline CandidatesValues candidates_example() {

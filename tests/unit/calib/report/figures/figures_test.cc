@@ -178,6 +178,15 @@ TEST(Figures, TheWaterfallEndsAtTheNoise) {
   EXPECT_EQ(f.data.rows.size(), 5U);
 }
 
+TEST(Figures, TheWaterfallOfAnArrayWithoutAGradientIsOfTheReadingsAlone) {
+  WaterfallValues values = testing::waterfall_example();
+  values.tensor.reset();
+  const Figure f = waterfall_figure(values);
+  EXPECT_THAT(f.svg, Not(HasSubstr("tensor")));
+  EXPECT_EQ(f.data.head.size(), 3U);
+  for (const auto& row : f.data.rows) EXPECT_EQ(row.size(), 3U);
+}
+
 TEST(Figures, EffectsThatLookAlikeStandTogether) {
   const ConfusionValues v = testing::confusion_example();
   const std::vector<std::size_t> order = order_by_likeness(v.correlation);
