@@ -87,8 +87,8 @@ std::vector<ParameterMoves> moves_among(std::vector<calibration::Calibration> al
   });
   std::vector<ParameterMoves> out;
   if (all.empty()) return out;
-  const std::size_t sensors = all.back().sensors.size();
-  std::erase_if(all, [&](const auto& c) { return c.sensors.size() != sensors; });
+  const sensor::Geometry array = all.back().geometry;
+  std::erase_if(all, [&](const auto& c) { return !c.geometry.agrees_with(array); });
   for (std::size_t i = 1; i < all.size(); ++i) out.push_back(moves_between(all[i - 1], all[i]));
   return out;
 }

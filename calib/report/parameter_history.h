@@ -19,11 +19,11 @@ struct ParameterMoves {
   std::string t_utc;     ///< start of the run that `to` is from
   validity::DiffReport diff;
 };
-/// Both of as many sensors.
+/// Both of one array.
 [[nodiscard]] ParameterMoves moves_between(const calibration::Calibration& from,
                                            const calibration::Calibration& to);
-/// From each to the next in the order of time. Those whose start is not known and those of another number of
-/// sensors than the newest are left out.
+/// From each to the next in the order of time. Those whose start is not known and those of another array than
+/// the newest are left out.
 [[nodiscard]] std::vector<ParameterMoves> moves_among(std::vector<calibration::Calibration> calibrations);
 
 /// {"from","to","t_utc","changed","conclusion","remarks":[..],"text": moves_text,

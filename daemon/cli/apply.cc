@@ -52,14 +52,16 @@ void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
 int run_apply(const Session& session, const ApplyArguments& args) {
   const auto output = OutputFile::at(args.output, {args.calibration, args.run});
   if (!output) return report(session, output.error());
-  const auto calibration = with_progress("apply", [&] { return calibration_of(args.calibration, {}); });
+  const auto flags = with_places_of({args.calibration, args.run}, {});
+  if (!flags) return report(session, flags.error());
+  const auto calibration = with_progress("apply", [&] { return calibration_of(args.calibration, *flags); });
   if (!calibration) return report(session, calibration.error());
-  const auto table = store::read_poses(args.run);
-  if (!table) return report(session, table.error());
-  if (auto same = same_sensors(*calibration, args.calibration, *table); !same)
+  const auto source = store::read_run(args.run, store::Masked::kept);
+  if (!source) return report(session, source.error());
+  if (auto same = same_array(*calibration, args.calibration, *source); !same)
     return report(session, same.error());
-  const auto rows =
-      with_progress("apply", [&] { return calib::calibration::apply(*calibration, *table, args.options); });
+  const auto rows = with_progress(
+      "apply", [&] { return calib::calibration::apply(*calibration, source->table, args.options); });
   if (!rows) return report(session, rows.error());
   const std::string csv = calib::calibration::format_applied(*rows);
   std::set<std::string> left_out;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
 
 #include "calib/calibration/calibration.h"
 #include "daemon/cli/fit_flags.h"
+#include "daemon/store/same_array.h"
 
 namespace mgtd::daemon::cli {
 
@@ -14,8 +16,18 @@ namespace mgtd::daemon::cli {
 [[nodiscard]] Result<calib::calibration::Calibration> calibration_of(const std::string& path,
                                                                      const FitFlags& flags);
 
-/// Refuses a calibration (of `file`) of more or fewer sensors than the table has readings of.
-[[nodiscard]] Result<void> same_sensors(const calib::calibration::Calibration& calibration,
-                                        const std::string& file, const PoseTable& table);
+/// The same with the places that the first of `files` knows, for those that are pose tables, which know none.
+[[nodiscard]] Result<FitFlags> with_places_of(const std::vector<std::string>& files, FitFlags flags);
+
+/// Refuses a calibration (of `file`) of another array than the one that was read: of more or fewer sensors,
+/// or of places that are not those of the run file.
+[[nodiscard]] Result<void> same_array(const calib::calibration::Calibration& calibration,
+                                      const std::string& file, const store::PoseSource& source);
+
+/// Refuses a calibration (of `file`) that does not continue the history of an array: one without a date, or
+/// of another array than the first.
+[[nodiscard]] Result<void> continues(const store::PlacedFile& first,
+                                     const calib::calibration::Calibration& calibration,
+                                     const std::string& file);
 
 }  // namespace mgtd::daemon::cli

@@ -51,7 +51,7 @@ int run_check(const Session& session, const CheckArguments& args) {
   const auto source = store::read_run(args.run);
   if (!source) return report(session, source.error());
   tell_masked(*source);
-  if (auto same = same_sensors(*calibration, args.calibration, source->table); !same)
+  if (auto same = same_array(*calibration, args.calibration, *source); !same)
     return report(session, same.error());
   const auto options = fit_options(*args.flags, *source);
   if (!options) return report(session, options.error());

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "calib/poses/pose_columns.h"
 #include "calib/report/change_report.h"
 #include "calib/report/diff_report.h"
 #include "daemon/cli/calibration_file.h"
@@ -29,19 +28,19 @@ struct DiffArguments {
 };
 
 int run_diff(const Session& session, const DiffArguments& args) {
+  const auto flags = with_places_of({args.a, args.b}, *args.flags);
+  if (!flags) return report(session, flags.error());
   const auto taken = [&](const std::string& path) {
-    return with_progress("diff", [&] { return calibration_of(path, *args.flags); });
+    return with_progress("diff", [&] { return calibration_of(path, *flags); });
   };
   const auto a = taken(args.a);
   if (!a) return report(session, a.error());
   const auto b = taken(args.b);
   if (!b) return report(session, b.error());
-  if (a->sensors.size() != b->sensors.size())
-    return report(session, {ErrorCode::bad_input,
-                            fmt::format("{} is of {} and {} of {}: this is another array", args.a,
-                                        calib::poses::counted(a->sensors.size()), args.b,
-                                        calib::poses::counted(b->sensors.size())),
-                            "compare calibrations of one array"});
+  if (auto same = store::same_array({args.a, a->geometry}, {args.b, b->geometry},
+                                    "compare calibrations of one array");
+      !same)
+    return report(session, same.error());
   for (const auto* c : {&*a, &*b}) {
     if (!c->accepted_by_checks)
       fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);

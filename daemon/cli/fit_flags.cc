@@ -204,7 +204,7 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
   if (flags.field_sd_nT) out.field_sd_nT = *flags.field_sd_nT;
   if (flags.places_needed) {
     const std::optional<calib::sensor::Geometry> own =
-        source.header ? std::optional(source.header->options.geometry) : std::nullopt;
+        source.header ? std::optional(source.header->options.geometry) : flags.known_places;
     const auto geometry =
         array_for(flags.array, calib::poses::sensors_of(source.table), source.table.source, own);
     if (!geometry) return tl::unexpected(geometry.error());

@@ -23,6 +23,8 @@ struct FitFlags {
   std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;
   ArrayFlags array;
+  /// Of another file of the command, for a pose table, which has no places itself.
+  std::optional<calib::sensor::Geometry> known_places{};
   bool places_needed{true};  ///< false: the places are those of a calibration
 };
 

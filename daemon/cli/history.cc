@@ -56,19 +56,15 @@ Result<nlohmann::json> history_of_files(const HistoryArguments& args) {
   if (args.files.size() < 2)
     return fail(ErrorCode::usage, "one calibration has no history",
                 "name two or more, or none to ask the daemon");
+  const auto flags = with_places_of(args.files, *args.flags);
+  if (!flags) return tl::unexpected(flags.error());
   std::vector<calib::calibration::Calibration> all;
   for (const std::string& path : args.files) {
-    auto calibration = with_progress("history", [&] { return calibration_of(path, *args.flags); });
+    auto calibration = with_progress("history", [&] { return calibration_of(path, *flags); });
     if (!calibration) return tl::unexpected(calibration.error());
-    if (calibration->reference.t_utc.empty())
-      return fail(ErrorCode::bad_input, fmt::format("{} does not say when it was measured", path),
-                  "the column t_utc of a pose table says it (docs/pose-table.md)");
-    if (!all.empty() && all.front().sensors.size() != calibration->sensors.size())
-      return fail(ErrorCode::bad_input,
-                  fmt::format("{} is of {} sensors and {} of {}: this is another array", args.files.front(),
-                              all.front().sensors.size(), path, calibration->sensors.size()),
-                  "compare calibrations of one array");
     all.push_back(*std::move(calibration));
+    const store::PlacedFile first{args.files.front(), all.front().geometry};
+    if (auto ok = continues(first, all.back(), path); !ok) return tl::unexpected(ok.error());
   }
   const auto moves = calib::report::moves_among(std::move(all));
   auto told = nlohmann::json::array();

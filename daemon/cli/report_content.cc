@@ -106,9 +106,14 @@ void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
 Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, ReportContent& c) {
   if (wishes.earlier.empty()) return {};
   std::vector<calib::calibration::Calibration> all{c.fit.calibration};
+  const store::PlacedFile first{wishes.run, c.fit.calibration.geometry};
+  if (auto ok = continues(first, c.fit.calibration, wishes.run); !ok) return ok;
+  FitFlags placed = flags;
+  placed.known_places = first.places;
   for (const std::string& path : wishes.earlier) {
-    auto calibration = calibration_of(path, flags);
+    auto calibration = calibration_of(path, placed);
     if (!calibration) return tl::unexpected(calibration.error());
+    if (auto ok = continues(first, *calibration, path); !ok) return ok;
     all.push_back(std::move(*calibration));
   }
   if (auto figure = calib::report::history_of(calib::report::moves_among(std::move(all))))

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/store/pose_source.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 #include <string>
 
 #include "calib/poses/joined_runs.h"
-#include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
 #include "daemon/store/durable_file.h"
 #include "daemon/store/run_file.h"
+#include "daemon/store/same_array.h"
 
 namespace mgtd::daemon::store {
 namespace {
@@ -30,25 +28,6 @@ void leave_out_masked(PoseSource& source) {
     return std::any_of(source.masked.begin(), source.masked.end(),
                        [&](const MaskedPose& m) { return m.number == pose.number; });
   });
-}
-
-/// Two runs of one array, as far as their files tell.
-Result<void> same_array(const std::filesystem::path& first, const std::optional<RunHeader>& a,
-                        const std::string& second, const std::optional<RunHeader>& b) {
-  if (!a || !b || a->options.geometry == b->options.geometry) return {};
-  constexpr const char* kRemedy = "judge them one by one";
-  const auto a_m = a->options.geometry.cross_baseline_m(), b_m = b->options.geometry.cross_baseline_m();
-  if (a_m && b_m)
-    return fail(ErrorCode::refused,
-                fmt::format("the sensors of {} are {} m apart and those of {} {} m: this is another array",
-                            first.string(), *a_m, second, *b_m),
-                kRemedy);
-  return fail(ErrorCode::refused,
-              fmt::format("{} has {} and {} has {}, and not all stand at the same places: this is "
-                          "another array",
-                          first.string(), calib::poses::counted(a->options.geometry.sensors()), second,
-                          calib::poses::counted(b->options.geometry.sensors())),
-              kRemedy);
 }
 
 }  // namespace
@@ -91,8 +70,11 @@ Result<PoseSource> read_runs(const std::filesystem::path& first, const std::vect
     if (!out) return out;
     const auto other = read_run(path);
     if (!other) return tl::unexpected(other.error());
-    if (auto same = same_array(first, out->header, path, other->header); !same)
-      return tl::unexpected(same.error());
+    if (out->header && other->header) {
+      const PlacedFile a{first.string(), out->header->options.geometry},
+          b{path, other->header->options.geometry};
+      if (auto same = same_array(a, b, "judge them one by one"); !same) return tl::unexpected(same.error());
+    }
     auto both = calib::poses::joined(out->table, other->table);
     if (!both) return tl::unexpected(both.error());
     out->table = std::move(*both);

@@ -66,7 +66,9 @@ TEST(ParameterHistory, GoesThroughTheCalibrationsInTheOrderOfTime) {
              b = mgtd::testing::sealed_calibration("2026-05-11T08:00:00Z"),
              c = mgtd::testing::sealed_calibration("2026-09-20T08:00:00Z"),
              undated = mgtd::testing::sealed_calibration("");
-  const auto moves = moves_among({c, a, undated, b});
+  auto wider = mgtd::testing::sealed_calibration("2026-07-01T08:00:00Z");
+  wider.geometry = sensor::Geometry(0.6);
+  const auto moves = moves_among({c, a, undated, wider, b});
   ASSERT_EQ(moves.size(), 2U);
   EXPECT_EQ(moves[0].from, a.id);
   EXPECT_EQ(moves[0].to, b.id);

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "calib/sensor/geometry.h"
+#include "proto/error.h"
+
+namespace mgtd::daemon::store {
+
+/// A file, and where the sensors stand that it is of.
+struct PlacedFile {
+  std::string name;
+  calib::sensor::Geometry places;
+};
+
+/// same_array() refuses two files of different arrays: of more or fewer sensors, or of a sensor that stands
+/// elsewhere (Geometry::agrees_with). The message names both.
+[[nodiscard]] Result<void> same_array(const PlacedFile& a, const PlacedFile& b, const std::string& remedy);
+
+}  // namespace mgtd::daemon::store
