@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/report/reference_text.h"
 #include "calib/report/wandering_text.h"
 
 namespace mgtd::calib::report {
@@ -24,6 +25,9 @@ int revisits_that_tell(double factor) {
 
 std::string beyond_dwells_text(const criticism::tests::NoiseModel& noise) {
   const double factor = noise.beyond_dwells;
+  if (noise.vector && noise.vector->more())
+    return fmt::format("the noise is {:.2g} times what the spread within the dwells says: {}", factor,
+                       reference_scatter_remark(*noise.vector));
   std::string out = fmt::format(
       "the noise is {:.2g} times what the spread within the dwells says, in most channels and without a "
       "shape: successive samples are correlated (as if there were {:.2g} times fewer), or it arises between "

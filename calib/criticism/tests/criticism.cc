@@ -191,6 +191,12 @@ fit::joint::JointFit weighed_by_residual(const fit::joint::JointFit& fit) {
   return out;
 }
 
+std::optional<fit::joint::ReferenceScatter> vector_scatter(const fit::joint::JointFit& fit) {
+  PoseTable poses;
+  for (const fit::joint::JointPose& pose : fit.problem.poses) poses.poses.push_back(*pose.pose);
+  return fit::joint::reference_scatter(poses, fit);
+}
+
 }  // namespace
 
 std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
@@ -229,6 +235,7 @@ Criticism criticise(const fit::joint::JointFit& fit, const CandidateEffects& can
   out.noise.revisits = revisits;
   out.noise.beyond_dwells =
       calibration::root_mean_square(fit::joint::pose_residuals(fit.problem, fit.state).noise_ratio);
+  out.noise.vector = vector_scatter(fit);
   return out;
 }
 

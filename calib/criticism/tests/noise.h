@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "calib/criticism/tests/score.h"
+#include "calib/fit/joint/reference_scatter.h"
 #include "calib/fit/joint/wandering_estimate.h"
 
 /// A NoiseModel says what the noise is, before anything is said about the model.
@@ -38,6 +39,8 @@ struct NoiseModel {
   /// Residual over the noise that the dwells tell, where it is larger and no law, no map and no revisit says
   /// that the model is at fault; else one.
   double beyond_dwells{1};
+  std::optional<fit::joint::ReferenceScatter>
+      vector{};                               ///< of a vector reference, where beyond_dwells counts
   double quantisation_nT{0};                  ///< step of the digitiser, where readings stand on its grid
   fit::joint::WanderingEstimate wandering{};  ///< of the offsets, where the tests stand against it
 

@@ -14,6 +14,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/joint/sample_correlation.h"
 #include "calib/report/fit_report_text.h"
+#include "calib/report/verdict_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
 
 namespace mgtd::calib {
@@ -252,6 +253,12 @@ TEST(KnownVector, ALawIsNamedInACage) {
                 testing::one_sensor());
   ASSERT_FALSE(found.rounds.empty());
   EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
+}
+
+TEST(KnownVector, AReferenceOfUnknownScatterIsNotTakenForNoiseOfTheSensors) {
+  PoseTable table = in_a_cage("", 3);
+  for (Pose& pose : table.poses) pose.ref_sd_nT.reset();
+  EXPECT_THAT(report::sentence(explained(table, testing::one_sensor())), HasSubstr("give ref_sd_nT = 0.2"));
 }
 
 /// One field strength does not tell the square of the own axis from those of the other two: together they are

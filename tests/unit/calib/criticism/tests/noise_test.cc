@@ -120,6 +120,15 @@ TEST(NoiseText, WithoutRevisitsSaysHowManyWouldTell) {
   EXPECT_THAT(report::noise_of_tests(noise), Not(HasSubstr("attitudes twice")));
 }
 
+/// Readings that contradict a vector reference may be right: no other n_eff makes it better.
+TEST(NoiseText, AVectorReferenceThatScattersMoreIsSaidToBeIt) {
+  NoiseModel noise;
+  noise.beyond_dwells = 12;
+  noise.vector = {.measured_nT = 0.49, .stated_nT = 0.05, .stated = false, .differs = true};
+  EXPECT_THAT(report::noise_of_tests(noise), HasSubstr("give ref_sd_nT = 0.49"));
+  EXPECT_THAT(report::noise_of_tests(noise), Not(HasSubstr("n_eff")));
+}
+
 TEST(NoiseText, OneAxisThatWandersMayFollowALawOfNoLibrary) {
   NoiseModel noise;
   noise.wandering.evidence = 20;
