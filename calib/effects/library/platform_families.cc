@@ -70,8 +70,7 @@ constexpr std::array kCurrentConfusions{
     Confusion{"axis.offset.temperature", "what draws current also warms: vary one without the other"}};
 constexpr std::array kFlexureConfusions{
     Confusion{"axis.transverse", "tilted mountings both ways; stiffen or load the arm"},
-    Confusion{"table.wobble",
-              "a turn common to all four sensors is the table's: sag differs from arm to arm"}};
+    Confusion{"table.wobble", "a turn common to all sensors is the table's: sag differs from arm to arm"}};
 constexpr std::array kThermalConfusions{
     Confusion{"axis.orthogonality.temperature", "the three axes of the sensor turn together"},
     Confusion{"axis.gain.temperature", "directions of the field across the turn"}};
@@ -115,7 +114,7 @@ constexpr std::array kPlatformFamilies{
         .needs = "azimuth_deg",
         .signature =
             "no scalar residual; sensors turn against each other as the array is tilted. A turn common "
-            "to all four is held by the table's angles only",
+            "to all sensors is held by the table's angles only",
         .confusions = kFlexureConfusions,
         .untestable = {},
         .experiment = {},

@@ -69,7 +69,7 @@ constexpr std::array kGradientDriftConfusions{Confusion{
     "axis.offset.drift", "many attitudes at each time: a gradient turns with the array, an offset does not"}};
 constexpr std::array kStepConfusions{
     Confusion{"site.gradient-drift", "poses that follow each other quickly about the moment"},
-    Confusion{"axis.offset.step", "a step of the site is seen by all four sensors and turns with the array"}};
+    Confusion{"axis.offset.step", "a step of the site is seen by all sensors and turns with the array"}};
 constexpr std::array kReferenceConfusions{Confusion{
     "axis.gain.drift", "a second scalar reference; an error that never changes is the scale of all axes"}};
 
@@ -208,7 +208,7 @@ constexpr std::array kSiteFamilies{
         .scan = {},
         .needs = "f_nT",
         .signature =
-            "nearly that of offsets and matrices common to the four sensors, held apart by the angles of "
+            "nearly that of offsets and matrices common to all sensors, held apart by the angles of "
             "the table only. A constant error is a common error of all scale factors: no residual shows it",
         .confusions = kReferenceConfusions,
         .untestable = {},

@@ -45,7 +45,7 @@ std::string gauge_text(const AzimuthOrigin& origin, double declination_sd_rad) {
           "declination {:.4f} +- {:.4f} deg",
           to_deg(origin.declination_rad), to_deg(declination_sd_rad));
     case AzimuthGauge::mean_gamma_zero:
-      return "platform Z is the axis of the standard turn; the azimuth is free: mean gamma of the four "
+      return "platform Z is the axis of the standard turn; the azimuth is free: mean gamma of the "
              "sensors set to zero";
   }
   return {};

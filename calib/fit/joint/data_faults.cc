@@ -73,6 +73,13 @@ double field_of(const JointProblem& problem, double f_nT) {
   return stats::median(std::move(fields));
 }
 
+/// The total field is the length of a vector reference.
+bool field_by_vector(const JointProblem& problem) {
+  return problem.has_reference &&
+         std::none_of(problem.poses.begin(), problem.poses.end(),
+                      [](const JointPose& pose) { return pose.pose->f_nT.has_value(); });
+}
+
 tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, std::size_t of, double size_nT,
                                  Unit unit) {
   return fail(ErrorCode::bad_input,
@@ -95,9 +102,12 @@ Result<void> check_units(const JointProblem& problem, double f_nT) {
   if (const Unit unit = unit_of(field / *most); earthly && unit.name != nullptr)
     return fail(
         ErrorCode::bad_input,
-        fmt::format("the total field looks like {}: {:.4g} where the readings are {:.4g} nT", unit.name,
-                    field, *most),
-        fmt::format("multiply f_nT (and f_sd_nT), or what you give with --field, by {}", unit.factor));
+        fmt::format("the {} looks like {}: {:.4g} where the readings are {:.4g} nT",
+                    field_by_vector(problem) ? "vector reference" : "total field", unit.name, field, *most),
+        fmt::format("multiply {} by {}",
+                    field_by_vector(problem) ? "ref_x_nT, ref_y_nT and ref_z_nT (and ref_sd_nT)"
+                                             : "f_nT (and f_sd_nT), or what you give with --field,",
+                    unit.factor));
   std::vector<std::size_t> off;
   Unit unit;
   for (const std::size_t i : all) {
@@ -125,10 +135,11 @@ Result<void> check_copies(const JointProblem& problem) {
         copies.push_back(i);
     }
     if (copies.empty()) continue;
-    return fail(ErrorCode::bad_input,
-                fmt::format("{} {} digit for digit what s{} reads: one sensor was copied, four are needed",
-                            sensors_text(copies, sensors), copies.size() == 1 ? "reads" : "read", first + 1),
-                "look at what fills the columns of these sensors: a port or a column was taken twice");
+    return fail(
+        ErrorCode::bad_input,
+        fmt::format("{} {} digit for digit what s{} reads: one sensor was copied, {} are needed",
+                    sensors_text(copies, sensors), copies.size() == 1 ? "reads" : "read", first + 1, sensors),
+        "look at what fills the columns of these sensors: a port or a column was taken twice");
   }
   return {};
 }
@@ -153,7 +164,7 @@ Result<void> check_turned_together(const PerSensor<Eigen::Matrix3Xd>& b_nT,
       fmt::format("{} did not turn together with s1: in the middle pose no fixed mounting brings the "
                   "directions in which they saw the field closer than {:.0f} deg (limit {:.0f})",
                   sensors_text(apart, b_nT.size()), to_deg(worst_rad), to_deg(kTurnedApart_rad)),
-      "the four readings of a pose belong to one attitude of one platform: look whether rows or columns of "
+      "all readings of a pose belong to one attitude of one platform: look whether rows or columns of "
       "the table were mixed up, or whether the sensors were turned one by one");
 }
 

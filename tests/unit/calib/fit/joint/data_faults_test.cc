@@ -47,6 +47,15 @@ std::vector<Row> rows() {
          for (Pose& pose : run.poses) *pose.f_nT *= 1e-3;
        },
        "the total field looks like uT", "f_nT"},
+      {"vector_reference_in_microtesla",
+       [](PoseTable& run) {
+         for (Pose& pose : run.poses) {
+           pose.ref_nT = 1e-3 * Eigen::Vector3d(*pose.f_nT, 0, 0);
+           pose.ref_sd_nT = 1e-6;
+           pose.f_nT.reset();
+         }
+       },
+       "the vector reference looks like uT", "ref_x_nT, ref_y_nT and ref_z_nT (and ref_sd_nT) by 1000"},
       {"microtesla_without_a_field",
        [](PoseTable& run) {
          scale_sensors(run, 0, 1e-3);
@@ -57,7 +66,8 @@ std::vector<Row> rows() {
        [](PoseTable& run) {
          for (Pose& pose : run.poses) pose.y_nT[1] = pose.y_nT[2] = pose.y_nT[3] = pose.y_nT[0];
        },
-       "s2, s3 and s4 read digit for digit what s1 reads", "taken twice"},
+       "s2, s3 and s4 read digit for digit what s1 reads: one sensor was copied, 4 are needed",
+       "taken twice"},
       {"two_sensors_on_one_port",
        [](PoseTable& run) {
          for (Pose& pose : run.poses) pose.y_nT[3] = pose.y_nT[1];
