@@ -19,16 +19,18 @@
 #include "daemon/cli/work_progress.h"
 #include "daemon/run/limits_cost.h"
 #include "daemon/run/planned_poses.h"
+#include "daemon/store/pose_source.h"
 
 namespace mgtd::daemon::cli {
 namespace {
 
 constexpr const char* kPlanHelp =
     R"(Prints the standard error that every parameter and the tensor would have, what stays weakly known and which
-poses would help most. The poses are those of POSES.csv (columns pose, azimuth_deg, pitch_deg, roll_deg and
-whatever an effect needs; of its readings only the number of sensors counts), or those of the run that a
-configuration describes, or of the default run. With an effect: how well its coefficients would be known, and told from the rest.
-With a configuration whose table does not reach every attitude: what its limits cost, and what to do.
+poses would help most. The poses are those of POSES, a run file or a CSV (columns pose, azimuth_deg, pitch_deg,
+roll_deg and whatever an effect needs; of its readings only the number of sensors counts, and the columns of a
+vector reference are not used), or those of the run that a configuration describes, or of the default run. With
+an effect: how well its coefficients would be known, and told from the rest. With a configuration whose table
+does not reach every attitude: what its limits cost, and what to do.
 
 Then, for every effect of the library that is not planned for: the smallest size that the run would show, and
 the pairs of effects that it could not tell apart, with the further measurement that would.
@@ -74,6 +76,39 @@ Result<void> take_config(const PlanArguments& args, Wanted& wanted) {
   return {};
 }
 
+/// The text of a list of poses, or of the table of a run file; where its sensors stand, of the latter.
+struct ListedPoses {
+  std::string text;
+  std::optional<calib::sensor::Geometry> places;
+};
+
+Result<ListedPoses> listed_poses(const std::string& path) {
+  if (store::is_run_file(path)) {
+    const auto source = store::read_run(path);
+    if (!source) return tl::unexpected(source.error());
+    return ListedPoses{calib::poses::format_pose_table(source->table), source->header->options.geometry};
+  }
+  auto text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  return ListedPoses{*std::move(text), std::nullopt};
+}
+
+/// A run in a coil cage has no angles to be planned; beside a table a vector reference is not planned for.
+Result<void> look_for_vector(const std::string& text, const std::string& path) {
+  const std::string head = text.substr(0, text.find('\n'));
+  if (head.find("ref_x_nT") == std::string::npos) return {};
+  if (head.find("azimuth_deg") == std::string::npos)
+    return fail(ErrorCode::bad_input,
+                fmt::format("{} has fields of a coil cage (ref_x_nT) and no table angles: mgt plan judges "
+                            "attitudes in one field only",
+                            path),
+                "take fields along x, y and z of the cage both ways, others between them, and some near zero "
+                "and full scale, then see the standard errors of mgt fit");
+  fmt::print(stderr, "{}: ref_x_nT, ref_y_nT and ref_z_nT are not used: planned is a run without them\n",
+             path);
+  return {};
+}
+
 Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
   if (!args.config.empty()) return take_config(args, wanted);
   calib::design::DesignRequest& request = wanted.request;
@@ -83,17 +118,19 @@ Result<void> take_poses(const PlanArguments& args, Wanted& wanted) {
     request.poses = std::move(*poses);
     return {};
   }
-  const auto text = read_file(args.poses);
-  if (!text) return tl::unexpected(text.error());
+  const auto listed = listed_poses(args.poses);
+  if (!listed) return tl::unexpected(listed.error());
+  if (auto ok = look_for_vector(listed->text, args.poses); !ok) return ok;
   if (args.calibration.empty() && args.array.array.empty()) {
     // A table that was measured tells its own sensors; a list of poses is for the cross.
-    if (const auto measured = calib::poses::parse_pose_table(*text, args.poses)) {
-      const auto array = array_for(args.array, calib::poses::sensors_of(*measured), args.poses, std::nullopt);
+    if (const auto measured = calib::poses::parse_pose_table(listed->text, args.poses)) {
+      const auto array =
+          array_for(args.array, calib::poses::sensors_of(*measured), args.poses, listed->places);
       if (!array) return tl::unexpected(array.error());
       request.geometry = *array;
     }
   }
-  auto poses = calib::poses::parse_pose_list(*text, args.poses, request.geometry.sensors());
+  auto poses = calib::poses::parse_pose_list(listed->text, args.poses, request.geometry.sensors());
   if (!poses) return tl::unexpected(poses.error());
   request.poses = std::move(*poses);
   return {};
@@ -191,7 +228,7 @@ void add_plan(CLI::App& app, Session& session) {
                   [args, &session] { return run_plan(session, *args); });
   command->footer(kPlanHelp);
   auto* const poses =
-      command->add_option("POSES", args->poses, "pose list in CSV; the default run when absent");
+      command->add_option("POSES", args->poses, "pose list in CSV, or *.mgtrun; the default run when absent");
   command->add_option("--config", args->config, "take poses, limits and site from this configuration")
       ->excludes(poses);
   command->add_option("--cal", args->calibration,

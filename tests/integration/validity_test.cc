@@ -22,8 +22,13 @@ class Validity : public ::testing::Test {
   void measure(const std::string& file, int seed) {
     std::ofstream(dir_ / "rig.toml") << "[rig]\nname = \"r\"\nparameters = \"table6\"\nseed = " << seed
                                      << "\n";
-    const Finished made = run_program(
-        {program("mgt-rig"), "table", "--scenario", dir_ / "rig.toml", "-o", dir_ / file}, dir_.path());
+    table_of("rig", file);
+  }
+  /// What the rig of NAME.toml measures: NAME.csv, or `file`.
+  void table_of(const std::string& name, const std::string& file = "") {
+    const Finished made = run_program({program("mgt-rig"), "table", "--scenario", dir_ / (name + ".toml"),
+                                       "-o", dir_ / (file.empty() ? name + ".csv" : file)},
+                                      dir_.path());
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   /// Header and twelve of the random poses; `shift_nT` is added to s3_z_nT.
@@ -109,9 +114,7 @@ TEST_F(Validity, APlanBeforeAnythingIsMeasured) {
 TEST_F(Validity, APlanForTheTableOfOneSensor) {
   std::ofstream(dir_ / "one.toml")
       << "[rig]\nparameters = \"random\"\nseed = 3\n[array]\npositions_m = [[0, 0, 0]]\n";
-  const Finished made = run_program(
-      {program("mgt-rig"), "table", "--scenario", dir_ / "one.toml", "-o", dir_ / "one.csv"}, dir_.path());
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  table_of("one");
   const Finished plan = mgt({"plan", dir_ / "one.csv", "--json"});
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
   const json report = json::parse(plan.out);
@@ -119,6 +122,27 @@ TEST_F(Validity, APlanForTheTableOfOneSensor) {
   EXPECT_TRUE(report.at("tensor_sd_nT_per_m").at("xx").is_null());
   EXPECT_GT(report.at("field_sd_nT"), 0.0);
   for (const json& pose : report.at("helpful")) EXPECT_GT(pose.at("variance_share"), 0.0);
+}
+
+/// A run file says where its sensors stand, too.
+TEST_F(Validity, APlanForARunFileOfTwoSensors) {
+  std::ofstream(dir_ / "two.toml") << "[rig]\nparameters = \"random\"\nseed = 3\n[array]\npositions_m = "
+                                      "[[0.25, 0, 0], [-0.25, 0, 0]]\n";
+  std::ofstream(dir_ / "array.toml") << "[array]\npositions_m = [[0.25, 0, 0], [-0.25, 0, 0]]\n";
+  table_of("two");
+  const std::string run = dir_ / "two.mgtrun";
+  ASSERT_EQ(mgt({"import", dir_ / "two.csv", "--array", dir_ / "array.toml", "-o", run}).exit_code, 0);
+  const Finished plan = mgt({"plan", run, "--json"});
+  ASSERT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_EQ(json::parse(plan.out).at("parameters").size(), 24U);
+  EXPECT_TRUE(json::parse(plan.out).at("tensor_sd_nT_per_m").at("yy").is_null());
+}
+
+TEST_F(Validity, APlanForACoilCageIsRefused) {
+  std::ofstream(dir_ / "cage.csv") << "pose,ref_x_nT,ref_y_nT,ref_z_nT,ref_sd_nT\n1,50000,0,0,0.5\n";
+  const Finished plan = mgt({"plan", dir_ / "cage.csv"});
+  EXPECT_EQ(plan.exit_code, 2);
+  EXPECT_THAT(plan.err, HasSubstr("fields of a coil cage (ref_x_nT) and no table angles"));
 }
 
 }  // namespace
