@@ -94,9 +94,13 @@ void Reader::read_rig(Scenario& s) {
   if (const auto truth = rig_named(s.rig, s.seed, sensors_)) {
     s.truth = *truth;
   } else if (of_the_cross(s.rig)) {
-    rig.complain("parameters",
-                 fmt::format("parameters = '{}' are of four sensors, the array has {}; say ideal or random",
-                             s.rig, sensors_));
+    rig.complain(
+        "parameters",
+        fmt::format("{} of four sensors, the array has {}; say {}ideal or random",
+                    rig.has("parameters")
+                        ? fmt::format("parameters = '{}' are", s.rig)
+                        : fmt::format("no parameters are given, and those of the default, '{}', are", s.rig),
+                    sensors_, rig.has("parameters") ? "" : "parameters = "));
   } else {
     rig.complain("parameters",
                  fmt::format("parameters = '{}' must be table3, table6, ideal or random", s.rig));

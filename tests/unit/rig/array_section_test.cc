@@ -50,6 +50,10 @@ TEST(ArraySection, WhatCannotBeIsToldWithItsLine) {
   EXPECT_THAT(
       errors("[rig]\nparameters = 'table6'\n[array]\npositions_m = [[0, 0, 0]]\n"),
       ElementsAre(HasSubstr("s.toml:2: [rig] parameters = 'table6' are of four sensors, the array has 1")));
+  EXPECT_THAT(
+      errors("[array]\npositions_m = [[0, 0, 0]]\n"),
+      ElementsAre(HasSubstr("no parameters are given, and those of the default, 'table6', are of four "
+                            "sensors, the array has 1; say parameters = ideal or random")));
   EXPECT_THAT(errors("[rig]\nparameters = 'ideal'\nbaseline_m = 0.4\n[array]\npositions_m = [[0, 0, 0]]\n"),
               ElementsAre(HasSubstr("s.toml:3: [rig] baseline_m is of the cross")));
   EXPECT_THAT(errors("[array]\npositions_m = []\n"),
