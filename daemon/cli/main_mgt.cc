@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <new>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "daemon/cli/command.h"
+#include "daemon/cli/help_format.h"
 #include "proto/nearest_word.h"
 #include "proto/standard_output.h"
 #include "proto/version.h"
@@ -88,6 +90,7 @@ constexpr const char* kDescription =
 int run(int argc, char** argv) {
   using namespace mgtd::daemon::cli;
   CLI::App app{kDescription, "mgt"};
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", mgtd::version());
   app.require_subcommand(1);
   app.fallthrough();
