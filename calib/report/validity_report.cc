@@ -41,11 +41,14 @@ std::string conclusion_text(const validity::ValidityReport& r) {
 
 std::vector<std::string> validity_reasons(const validity::ValidityReport& r) {
   std::vector<std::string> out{conclusion_text(r)};
+  if (r.own_poses)
+    out.emplace_back(
+        "these are the poses that the calibration was fitted to: they follow it in any case; measure others");
   out.push_back("smallest change that these poses show in 80 of 100 cases: " + seen_text(r.change));
+  if (r.turn) out.push_back(turn_text(*r.turn));
   if (r.excess > 1 && r.valid) {
     out.push_back(
         fmt::format("the poses scatter {:.2f} times more than the noise; the test allows for it", r.excess));
-  if (r.turn) out.push_back(turn_text(*r.turn));
   }
   if (!r.noise_from_dwells)
     out.emplace_back("the noise is that of the calibration's own run: the poses have no spreads or counts");

@@ -14,9 +14,10 @@
 #include "calib/fit/site_difference.h"
 #include "calib/linear/propagation.h"
 #include "calib/linear/symmetric_eigen.h"
+#include "calib/poses/pose_table.h"
 #include "calib/poses/run_time.h"
-#include "calib/stats/chi_square.h"
 #include "calib/sensor/sensor_equations.h"
+#include "calib/stats/chi_square.h"
 #include "calib/validity/fixed_calibration.h"
 #include "calib/validity/restricted_fit.h"
 
@@ -160,7 +161,6 @@ Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::Sen
           .sensors = sensors.size()};
 }
 
-double rms_noise(const fit::joint::JointProblem& problem) {
 /// The turn Q by which the array was placed, and what is left of it.
 std::optional<CommonTurn> turn_of(const fit::joint::JointProblem& problem, const Eigen::Matrix3d& Q,
                                   const Evidence& evidence) {
@@ -170,6 +170,7 @@ std::optional<CommonTurn> turn_of(const fit::joint::JointProblem& problem, const
   return common_turn(sensor::turn_by<double>(small) * Q, rest.covariance.diagonal().cwiseSqrt());
 }
 
+double rms_noise(const fit::joint::JointProblem& problem) {
   double variance = 0;
   for (const fit::joint::JointPose& pose : problem.poses)
     variance += sensor::over_channels(pose.weight.size(), [&](auto n) {
@@ -239,6 +240,7 @@ Result<ValidityReport> check(const calibration::Calibration& calibration, const 
   ValidityReport report;
   report.calibration = calibration.id;
   report.poses = static_cast<int>(poses.poses.size());
+  report.own_poses = poses::data_hash(table) == calibration.data_hash;
   const auto settled = settle(calibration, poses, *frozen, options, report);
   if (!settled) return tl::unexpected(settled.error());
   const fit::joint::JointProblem& problem = settled->problem;

@@ -18,6 +18,7 @@ namespace mgtd::calib::validity {
 struct ValidityReport {
   std::string calibration;  ///< its id
   int poses{0};
+  bool own_poses{false};          ///< those that it was fitted to, which do not test it
   bool valid{false};              ///< no change (kChanged), and the poses follow the model
   Change change;                  ///< new less old, as far as these poses tell it
   fit::ErrorSummary errors;       ///< of the fixed calibration on these poses
@@ -26,8 +27,8 @@ struct ValidityReport {
   double excess{1};               ///< scatter that no change of the calibration explains, over the noise
   bool noise_from_dwells{false};  ///< else the noise is that of the calibration's own run
   std::vector<fit::OutlierNode> outliers;
-
   std::optional<CommonTurn> turn;  ///< since the calibration; where a vector reference tells it
+
   /// Whether a parameter of the calibration changed; a calibration that did not change is still not valid
   /// where the poses scatter too much.
   [[nodiscard]] bool changed() const { return change.p() < kChanged; }

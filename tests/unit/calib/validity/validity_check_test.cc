@@ -38,6 +38,15 @@ TEST(Check, UnchangedRigPassesAtTheStatedRate) {
   EXPECT_NEAR(sum / 60, 1, 0.12);
 }
 
+TEST(Check, ThePosesOfTheFitAreNoTest) {
+  const PoseTable own = simulate(rig(), 36, 121, 7);
+  const auto remark = ::testing::Contains(HasSubstr("the poses that the calibration was fitted to"));
+  const auto fitted = fit::method_choice::fit(own, {});
+  EXPECT_THAT(report::validity_reasons(*check(fitted->calibration, own, {})), remark);
+  EXPECT_THAT(report::validity_reasons(*check(fitted->calibration, dozen(rig(), 8), {})),
+              ::testing::Not(remark));
+}
+
 TEST(Check, RemountedArrayIsStillValid) {
   Simulation later = rig();
   const Eigen::Matrix3d Q = testing::passive(to_rad(40), 2) * testing::passive(to_rad(-2), 0);
@@ -47,15 +56,6 @@ TEST(Check, RemountedArrayIsStillValid) {
   EXPECT_TRUE(report->valid) << report::validity_reasons(*report).front();
 }
 
-TEST(Check, OneSensorTellsNothingOfItsTurn) {
-  const auto fitted = fit::method_choice::fit(testing::first_sensor_of(simulate(rig(), 36, 121, 11)),
-                                              testing::at_the_origin());
-  ASSERT_TRUE(fitted) << fitted.error().text();
-  const auto report = check(fitted->calibration, testing::first_sensor_of(dozen(rig(), 12)), {});
-  ASSERT_TRUE(report) << report.error().text();
-  EXPECT_TRUE(report->valid);
-  EXPECT_EQ(report->change.parameters.size(), 9U);
-  for (const ParameterChange& p : report->change.parameters) EXPECT_LT(p.seen, 100) << p.name;
 /// In a coil cage; the reference is turned against the holder of the sensors by these degrees about x, y, z.
 PoseTable in_a_cage(const testing::Places& places, const char* turned_deg, std::uint64_t seed) {
   const auto scenario = testing::scenario_of(
@@ -86,6 +86,15 @@ TEST(Check, AnArrayThatIsTurnedInItsCageIsStillValidAndTheTurnIsStated) {
   }
 }
 
+TEST(Check, OneSensorTellsNothingOfItsTurn) {
+  const auto fitted = fit::method_choice::fit(testing::first_sensor_of(simulate(rig(), 36, 121, 11)),
+                                              testing::at_the_origin());
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  const auto report = check(fitted->calibration, testing::first_sensor_of(dozen(rig(), 12)), {});
+  ASSERT_TRUE(report) << report.error().text();
+  EXPECT_TRUE(report->valid);
+  EXPECT_EQ(report->change.parameters.size(), 9U);
+  for (const ParameterChange& p : report->change.parameters) EXPECT_LT(p.seen, 100) << p.name;
   EXPECT_THAT(report::validity_reasons(*report)[1], HasSubstr("turn of a sensor not at all"));
 }
 
