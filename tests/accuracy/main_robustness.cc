@@ -41,7 +41,12 @@ constexpr const char* kOpening =
     "the "
     "pose or the stretch can. The limit of the check *bad poses* is a quarter of the poses. *Good readings "
     "left "
-    "out*: the largest share over the row's cells.\n\n";
+    "out*: the largest share over the row's cells.\n\n"
+    "A stretch that begins within three poses of an end of the run is not left out, for it may be a step. "
+    "Nor is "
+    "one where a sensor that moved in its seat for good accounts for more: then its readings are good, and "
+    "the "
+    "model misses something.\n\n";
 
 std::string clean_line(int runs) {
   const Robustness r = robustness({Gross::axis, 0, 0}, runs);
