@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-/// These columns of the user's say where on Earth the array stood; they are kept with the poses and never
+/// These user-supplied columns say where on Earth the array stood; they are kept with the poses and never
 /// fitted. They are no cause of a residual, so no test looks at them; a formula that names one may use it.
 namespace mgtd::calib::poses {
 

@@ -97,8 +97,8 @@ std::string text(const criticism::search::SizeUnusual& n) {
 }
 
 std::string text(const criticism::search::SizeBeyondAll& n) {
-  return fmt::format("the size that {} would need, {}, is beyond what occurs: it is not named",
-                     n.candidate.effect, size_text(n.candidate));
+  return fmt::format("{} is not named: it would have to be {}, larger than ever occurs", n.candidate.effect,
+                     size_text(n.candidate));
 }
 
 std::string text(const criticism::search::DescribesRecording& n) {

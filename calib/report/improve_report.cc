@@ -50,7 +50,7 @@ std::string stop_text(const criticism::search::ImproveReport& r) {
     case criticism::search::ImproveStop::round_limit:
       return "the number of rounds is reached";
     case criticism::search::ImproveStop::nothing_can_be_added:
-      return "something stands out, and nothing that stands for it could be added";
+      return "a misfit remains, but no effect that could be added explains it";
     case criticism::search::ImproveStop::held_out_error_rises:
       return fmt::format("{} was not added: on poses left out the error rises from {:.4g} to {:.4g} nT",
                          r.refused->spec, r.refused->held_out_before_nT, r.refused->held_out_after_nT);

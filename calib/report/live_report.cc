@@ -83,9 +83,12 @@ LiveReport near_source_report(const criticism::live::LargeClosure& large, bool c
 }
 
 LiveReport rearranged_report(const criticism::tests::RearrangementFinding& found) {
-  const std::string limit = found.dof == 4 ? std::string("100, ten standard deviations")
-                                           : fmt::format("{:.0f}, as rare as ten standard deviations of four",
-                                                         stats::chi_square_alike(100, 4, found.dof));
+  const std::string limit =
+      found.dof == 4
+          ? std::string("100, ten standard deviations")
+          : fmt::format(
+                "{:.0f}, the limit with the same rate of false alarms as 100 for four closure numbers",
+                stats::chi_square_alike(100, 4, found.dof));
   const std::size_t others = found.possible.front().sensor.size() - 1;
   const std::string what = rearrangement_text(found.possible);
   if (found.turned()) {

@@ -35,12 +35,13 @@ std::string reason_text(const criticism::search::NextReport& r) {
     if (std::string text = not_explained_text(r); !text.empty()) return text;
     const auto& [winner, nearest] = *r.nothing_to_settle;
     if (winner.empty())
-      return "nothing stands out on this run: there is nothing to settle (two names ask about a pair)";
+      return "nothing stands out on this run: there is nothing to settle; to ask about two effects, name "
+             "both";
     if (nearest.empty())
       return fmt::format("no other effect comes near {}: there is nothing to settle", winner);
     return fmt::format(
         "nothing else could stand in the place of {}; the nearest, {}, is told from it: there is nothing to "
-        "settle (two names ask about a pair)",
+        "settle; to ask about two effects, name both",
         winner, nearest);
   }
   if (r.told_apart) return "the poses of this run tell them apart: there is nothing to settle";

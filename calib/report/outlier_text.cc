@@ -31,7 +31,7 @@ std::string text_of(const Stretch& s) {
                        cause, rms);
   }
   if (s.count == 1) {
-    return fmt::format("pose {}, {}:{} {:.4g} {} off by {:.0f} times what the others allow", node.pose,
+    return fmt::format("pose {}, {}:{} {:.4g} {} off, {:.0f} times what the other readings allow", node.pose,
                        node.where, cause, node.shift, node.unit, node.sigmas);
   }
   return fmt::format("poses {}-{} disturbed:{} {} contradict{} the rest by {:.4g} {} (rms)", node.pose,

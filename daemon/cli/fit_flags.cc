@@ -47,13 +47,16 @@ void add_site_flags(CLI::App* command, FitFlags& f) {
   add_field_flags(command, f);
   add_array_flags(command, f.array);
   command
-      ->add_option("--inclination", f.inclination_deg,
-                   "of the field in the platform frame at zero table angles, deg, positive towards +Z")
+      ->add_option(
+          "--inclination", f.inclination_deg,
+          "inclination of the field in the platform frame at zero table angles, deg, positive towards +Z")
       ->check(in_range(-90, 90, "deg"));
-  command->add_option("--declination", f.declination_deg, "the same, from X towards Y, deg")
+  command
+      ->add_option("--declination", f.declination_deg,
+                   "declination of the field at zero table angles, from X towards Y, deg")
       ->check(in_range(-360, 360, "deg"));
   add_table_flag(command, f);
-  command->add_option("--seed", f.seed, "of everything random")->check(seed_number());
+  command->add_option("--seed", f.seed, "seed of all random numbers")->check(seed_number());
 }
 
 constexpr double kTurn = 6.4;  ///< in radians, rounded up

@@ -171,10 +171,9 @@ int run_replay(const Session& session, const ReplayArguments& args) {
 
 void add_replay(CLI::App& app, Session& session) {
   auto args = std::make_shared<ReplayArguments>();
-  CLI::App* const command =
-      add_command(app, session, "replay",
-                  "make the stream once more, to the last byte, from the daemon's raw journal (NDJSON)",
-                  [args, &session] { return run_replay(session, *args); });
+  CLI::App* const command = add_command(
+      app, session, "replay", "reproduce the stream byte for byte from the daemon's raw journal (NDJSON)",
+      [args, &session] { return run_replay(session, *args); });
   command
       ->add_option("JOURNAL", args->journals,
                    "raw-*.raw, beginning with the first file of a start of the daemon")

@@ -4,7 +4,7 @@
 #include "daemon/run/run_config.h"
 #include "proto/error.h"
 
-/// Whether the rate of the stream gives a run enough samples to work with.
+/// enough_samples() says whether the rate of the stream gives a run enough samples to work with.
 namespace mgtd::daemon::run {
 
 /// Refuses a plan with a dwell that cannot hold kFewestInDwell epochs, and a rate at which the window of

@@ -13,8 +13,9 @@ namespace mgtd::daemon::run {
 /// probability.
 inline constexpr std::size_t kMostHypotheses = 8;
 
-/// The formulas of a law that discover() leaves open, as hypotheses that a further measurement could tell
-/// apart: those that are effects of an array of so many sensors. None where fewer than two are.
+/// hypotheses_of() gives the formulas of a law that discover() leaves open, as hypotheses that a further
+/// measurement could tell apart: those that are effects of an array of so many sensors. None where fewer than
+/// two are.
 [[nodiscard]] std::vector<calib::design::Hypothesis> hypotheses_of(const calib::discovery::FoundLaw& law,
                                                                    int sensors);
 

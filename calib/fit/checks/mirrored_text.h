@@ -5,8 +5,8 @@
 
 namespace mgtd::calib::fit::checks {
 
-/// Of an array of `sensors`, those of the lesser number are called mirrored; where they are half of it, the
-/// field does not tell which half is.
+/// The smaller group of the `sensors` is called mirrored; with two equal groups the field cannot tell
+/// which.
 [[nodiscard]] bool handedness_is_open(std::size_t mirrored, std::size_t sensors);
 
 /// Says which sensors, by number, are mirrored and what that means.

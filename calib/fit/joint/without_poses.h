@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/fit/joint/joint_problem.h"
 
-/// without_poses() copies a problem or a state with all but its poses, to put others in: a part of the poses
-/// then costs no copy of all.
+/// without_poses() copies a problem or a state with all but its poses, so that a subset can be fitted without
+/// copying every pose.
 namespace mgtd::calib::fit::joint {
 
 [[nodiscard]] JointProblem without_poses(const JointProblem& problem);

@@ -15,10 +15,10 @@
 
 #include "proto/error.h"
 
-/// A JobProcess is one child process with nothing of ours but its words: no descriptor, no shell, and of
-/// environment only what has `mgt` tell its progress line by line. It has a bounded address space and
-/// processor time, its output is bounded, it dies with us, and the kernel takes it first where memory runs
-/// out. Its end and its output come on the io_context.
+/// A JobProcess is one child process that gets its arguments and no descriptor, shell or secret of the
+/// daemon; of the environment only what has `mgt` tell its progress line by line. It has a bounded address
+/// space and processor time, its output is bounded, it dies with us, and the kernel takes it first where
+/// memory runs out. Its end and its output come on the io_context.
 namespace mgtd::daemon::serve::console {
 
 struct JobBounds {
