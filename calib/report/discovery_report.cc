@@ -328,9 +328,9 @@ std::string to_text(const DiscoveryReport& r, const std::string& run, const std:
   if (r.wanders) out += "the offsets of this run wander: slow laws are held against that\n";
   const bool show = r.finding != LawFinding::pass && !r.laws.empty() && r.laws.front().stands_out;
   // Of what is not believed the first says enough.
-  const std::size_t told = r.finding == LawFinding::noise_like ? 1 : r.laws.size();
-  for (std::size_t i = 0; show && i < told; ++i) tell_law(r.laws[i], i + 1, told, out);
-  if (show && told == r.laws.size())
+  const std::size_t shown = r.finding == LawFinding::noise_like ? 1 : r.laws.size();
+  for (std::size_t i = 0; show && i < shown; ++i) tell_law(r.laws[i], i + 1, shown, out);
+  if (show && shown == r.laws.size())
     fmt::format_to(to, "left after {}: p {}; most on {}, {:.1f} standard deviations of chi-square\n",
                    r.laws.size() == 1 ? "it" : "them", stats::p_text(r.log10_p_left), r.left_on,
                    r.left_sigmas);

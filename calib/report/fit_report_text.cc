@@ -39,8 +39,8 @@ ErrorRow error_row(const std::string& stage, const fit::ErrorSummary& errors) {
   ErrorRow row{{stage, {}}, {stage, {}}};
   for (const double rmse : errors.total_field_rmse_nT) row.field.cells.push_back(error_cell(rmse));
   const auto all = components(errors.tensor_rmse_nT_per_m);
-  const bool told = !std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); });
-  for (const double rmse : all) row.tensor.cells.push_back(told ? error_cell(rmse) : "");
+  const bool determined = !std::all_of(all.begin(), all.end(), [](double rmse) { return std::isnan(rmse); });
+  for (const double rmse : all) row.tensor.cells.push_back(determined ? error_cell(rmse) : "");
   return row;
 }
 

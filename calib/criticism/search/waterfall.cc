@@ -33,13 +33,13 @@ Result<ErrorLevel> level_with(const PoseTable& table, const ModelStage& whole,
 /// Of the tensor when every corrected component has the noise of its pose means.
 double tensor_floor(const fit::joint::JointFit& fit) {
   sensor::ChannelColumns<6> rows = calibration::gradient_rows(fit.problem.geometry);
-  const auto told = (rows.col(0).array() == rows.col(0).array()).count();
-  if (told == 0) return std::numeric_limits<double>::quiet_NaN();
+  const auto determined = (rows.col(0).array() == rows.col(0).array()).count();
+  if (determined == 0) return std::numeric_limits<double>::quiet_NaN();
   rows = rows.array().isNaN().select(0.0, rows);
   double sum = 0;
   for (int c = 0; c < rows.cols(); ++c)
     sum += rows.col(c).squaredNorm() * std::pow(fit.pose_noise_nT(c / 3, c % 3), 2);
-  return std::sqrt(sum / static_cast<double>(told));
+  return std::sqrt(sum / static_cast<double>(determined));
 }
 
 }  // namespace

@@ -142,9 +142,9 @@ std::optional<double> reference_turn_sd_rad(const JointProblem& problem, const E
   const int slot = problem.slots().field();
   const Eigen::VectorXd one = Eigen::VectorXd::Unit(S.rows(), slot);
   const double own = 1 / information->solve(one)[slot] - 1 / (kFreeTurn_rad * kFreeTurn_rad);
-  const double told = own * spread;
-  if (!(told > 1 / (kKnown_rad * kKnown_rad))) return std::nullopt;
-  return 1 / std::sqrt(told);
+  const double information_of_turn = own * spread;
+  if (!(information_of_turn > 1 / (kKnown_rad * kKnown_rad))) return std::nullopt;
+  return 1 / std::sqrt(information_of_turn);
 }
 
 }  // namespace mgtd::calib::fit::joint
