@@ -14,7 +14,7 @@ constexpr std::size_t kCandidates = 48;  ///< attitudes that are tried for each 
 constexpr double kGained = 1e-3;         ///< of lambda: less is nothing
 
 struct Work {
-  const PoseTable& run;
+  PoseTable run;  ///< with_predictions()
   const fit::joint::JointFit& fit;
   const fit::joint::JointOptions& options;
   std::uint64_t seed;
@@ -156,7 +156,7 @@ Result<HypothesisMenu> hypothesis_menu(const PoseTable& run, const fit::joint::J
                                        std::span<const LawAction> actions) {
   if (hypotheses.size() < 2)
     return fail(ErrorCode::usage, "one formula alone leaves nothing to settle", "name two");
-  const Work work{run, fit, options, seed};
+  const Work work{with_predictions(run, fit), fit, options, seed};
   auto fitted = hypothesis_fit(run, fit, options, hypotheses);
   if (!fitted) return tl::unexpected(fitted.error());
   HypothesisMenu out;

@@ -16,10 +16,14 @@ struct ModelOnPoses {
   fit::joint::JointState state;      ///< parameters of the fit; attitudes and fields of these poses
 };
 
-/// Readings of further poses stand for their attitude and field only. Keeps pointers into `table`. Refuses
-/// what the joint fit refuses.
+/// `table`: the poses that were fitted, which keep the weights of the fit, then further ones, whose readings
+/// stand for their attitude and field only. Keeps pointers into `table`. Refuses what the joint fit refuses.
 [[nodiscard]] Result<ModelOnPoses> model_on_poses(const PoseTable& table, const fit::joint::JointFit& fit,
                                                   const fit::joint::JointOptions& options);
+
+/// The run that was fitted, with the prediction of the model for every reading that the fit left out: poses
+/// that further ones can be made from.
+[[nodiscard]] PoseTable with_predictions(const PoseTable& run, const fit::joint::JointFit& fit);
 
 /// Rows by the coefficients of several effects, one after the other, as criticism::tests::effect_rows().
 /// Refuses an effect that these poses cannot feed.

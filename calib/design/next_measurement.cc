@@ -166,9 +166,10 @@ NextMenu next_measurements(const PoseTable& table, const fit::joint::JointFit& f
     find_form_only(here, *design, residual, winner, alternatives);
     out.p_right_before = p_right(here, *design, residual, winner, alternatives);
   }
+  const PoseTable sound = with_predictions(table, fit);
   double worth = out.p_right_before + kWorthMeasuring;
   for (const Action& action : actions()) {
-    const double after = p_right_after(further(table, action, fit), fit, options, winner, alternatives);
+    const double after = p_right_after(further(sound, action, fit), fit, options, winner, alternatives);
     if (after < worth) continue;
     if (&action == actions().data()) worth = after + kBetter;
     out.steps.push_back(

@@ -151,7 +151,7 @@ int run_next(const Session& session, const NextArguments& args) {
   } else {
     print_text(session, doubts_text(*doubts) + calib::report::to_text(*next));
   }
-  return next->steps.empty() && !next->effect.empty() ? 1 : 0;
+  return next->none_helps ? 1 : 0;
 }
 
 }  // namespace

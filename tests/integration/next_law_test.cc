@@ -79,6 +79,8 @@ TEST_F(NextLaw, FormulasEffectsAndPlacesCanBeNamed) {
   EXPECT_GE(ask({"next", first, "s3.z"}).at("rivals").size(), 2U);
   const Finished elsewhere = run({"mgt", "next", first, "s1.x"});
   EXPECT_EQ(elsewhere.exit_code, 1);
+  const json apart = ask({"next", first, "four@s3.z,level=axis,expr=(u/50000)^4", "axis.offset.drift@s3.z"});
+  EXPECT_THAT(apart.at("text").get<std::string>(), HasSubstr("tell them apart: there is nothing to settle"));
   EXPECT_THAT(elsewhere.err, HasSubstr("no two formulas open at s1.x"));
 
   // A formula of the model that was chosen in doubt is asked about against what could stand in its place.

@@ -170,7 +170,7 @@ Result<NextReport> next_after(const ExplainReport& explained, const PoseTable& t
   if (!fit) return tl::unexpected(fit.error());
   const design::NextMenu found = design::next_measurements(table, *fit, joint, asked);
   out.steps = steps_of(table, found.steps, *fit);
-  out.none_helps = found.steps.empty();
+  out.none_helps = out.steps.empty();
   out.p_right_before = found.p_right_before;
   return out;
 }

@@ -70,6 +70,24 @@ TEST(HypothesisMenu, PlacedPosesTellMoreThanThoseOfTheRun) {
   }
 }
 
+/// What a fit leaves out must not decide between formulas.
+TEST(HypothesisMenu, AReadingThatIsLeftOutCountsForNothing) {
+  const auto clean = asked(quartic(), kQuartic);
+  ASSERT_TRUE(clean) << clean.error().text();
+  for (const double off_nT : {1000.0, 1e6}) {
+    PoseTable run = quartic();
+    run.poses[70].y_nT[2].z() += off_nT;
+    const auto menu = asked(run, kQuartic);
+    ASSERT_TRUE(menu) << menu.error().text();
+    EXPECT_NEAR(menu->p_right_before, clean->p_right_before, 0.02) << off_nT;
+    ASSERT_FALSE(menu->steps.empty()) << off_nT;
+    EXPECT_EQ(menu->steps.front().measurement.action, clean->steps.front().measurement.action) << off_nT;
+    EXPECT_NEAR(menu->steps.front().measurement.p_right_after, clean->steps.front().measurement.p_right_after,
+                0.02)
+        << off_nT;
+  }
+}
+
 TEST(HypothesisMenu, AnActionThatChangesNothingComesLast) {
   std::vector<LawAction> actions;
   for (const LawAction& action : law_actions())
