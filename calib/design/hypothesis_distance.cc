@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "calib/criticism/tests/alternatives.h"
 #include "calib/linear/ldlt.h"
 #include "calib/linear/qr.h"
 
@@ -18,6 +19,10 @@ Eigen::MatrixXd inverse_of_products(const Eigen::MatrixXd& A) {
 }
 
 }  // namespace
+
+double still_open(const HypothesisPair& pair, double lambda) {
+  return pair.weight * (1 - criticism::tests::probability_right(lambda));
+}
 
 HypothesisDistance::HypothesisDistance(const Eigen::MatrixXd& rows, Eigen::Index fixed,
                                        std::vector<Described> described,
@@ -47,8 +52,8 @@ Eigen::VectorXd HypothesisDistance::signature_of(std::size_t truth, const Eigen:
 std::vector<std::size_t> HypothesisDistance::worst_first() const {
   std::vector<std::size_t> out(pairs_.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
-  std::stable_sort(out.begin(), out.end(),
-                   [this](std::size_t a, std::size_t b) { return pairs_[a].lambda < pairs_[b].lambda; });
+  const auto open = [this](std::size_t i) { return still_open(pairs_[i].pair, pairs_[i].lambda); };
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return open(a) > open(b); });
   return out;
 }
 

@@ -25,7 +25,11 @@ struct Described {
 /// If `truth` is true and `other` is not.
 struct HypothesisPair {
   std::size_t truth{0}, other{0};
+  double weight{1};  ///< P of the one times P of the other
 };
+
+/// Weight of a pair times the probability that the wrong one of the two wins.
+[[nodiscard]] double still_open(const HypothesisPair& pair, double lambda);
 
 class HypothesisDistance {
  public:
@@ -35,7 +39,7 @@ class HypothesisDistance {
 
   /// Between the pair of that number, with all rows that were added.
   [[nodiscard]] double lambda(std::size_t pair) const { return pairs_[pair].lambda; }
-  /// Pairs, that with the smallest lambda first.
+  /// Pairs, that which is most open first.
   [[nodiscard]] std::vector<std::size_t> worst_first() const;
   /// What more rows would add to it.
   [[nodiscard]] double gain(std::size_t pair, const Eigen::MatrixXd& rows) const;
@@ -68,8 +72,8 @@ struct PossiblePose {
   double minutes{1};
 };
 
-/// That of a group which adds most a minute to the lambda of the worst pair, or of the next, where none of
-/// the group adds anything to that.
+/// That of a group which adds most a minute to the lambda of the pair that is most open, or of the next,
+/// where none of the group adds anything to that.
 [[nodiscard]] std::size_t best_of(const HypothesisDistance& distance, const std::vector<PossiblePose>& group);
 
 /// The best of each group in turn, those before it measured. Returns the place within each group.

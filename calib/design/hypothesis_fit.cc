@@ -68,7 +68,8 @@ std::vector<HypothesisPair> pairs_of(const HypothesisFit& fit, const std::vector
   for (std::size_t i = 0; i < asked.size(); ++i) {
     for (std::size_t j = i + 1; j < asked.size(); ++j) {
       const std::size_t a = asked[i], b = asked[j];
-      out.push_back(fit.d[b] > fit.d[a] ? HypothesisPair{b, a} : HypothesisPair{a, b});
+      const double weight = fit.hypotheses[a].P.value_or(1) * fit.hypotheses[b].P.value_or(1);
+      out.push_back(fit.d[b] > fit.d[a] ? HypothesisPair{b, a, weight} : HypothesisPair{a, b, weight});
     }
   }
   return out;

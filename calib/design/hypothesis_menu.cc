@@ -11,7 +11,7 @@ namespace mgtd::calib::design {
 namespace {
 
 constexpr std::size_t kCandidates = 48;  ///< attitudes that are tried for each pose
-constexpr double kGained = 1e-3;         ///< of lambda: less is nothing
+constexpr double kGained = 1e-3;         ///< of lambda, or of a probability: less is nothing
 
 struct Work {
   PoseTable run;  ///< with_predictions()
@@ -123,13 +123,9 @@ Result<Tried> tried(const LawAction& action, const Work& work, const HypothesisF
       .lambda = *std::move(lambda)};
 }
 
-/// What an action adds to the worst lambda a minute, as far as it counts.
+/// What an action adds to the probability of the right name a minute.
 double a_minute(const HypothesisStep& step) {
-  const auto counted = [](const std::optional<double>& lambda) {
-    return std::min(criticism::tests::kToldApart, lambda.value_or(0));
-  };
-  return (counted(step.measurement.lambda_after) - counted(step.measurement.lambda_before)) /
-         step.measurement.minutes;
+  return (step.measurement.p_right_after - step.measurement.p_right_before) / step.measurement.minutes;
 }
 
 /// The pairs that something tells apart.
@@ -143,10 +139,27 @@ std::vector<std::size_t> pairs_told_apart(const std::vector<double>& before, con
   return out;
 }
 
-std::size_t least(const std::vector<double>& lambda, const std::vector<std::size_t>& of) {
-  return *std::min_element(of.begin(), of.end(),
-                           [&](std::size_t a, std::size_t b) { return lambda[a] < lambda[b]; });
-}
+/// The pairs that count, by their weights.
+struct Open {
+  const std::vector<HypothesisPair>& pairs;
+  std::vector<std::size_t> count;
+  const std::vector<double>& before;  ///< lambda on the run
+
+  [[nodiscard]] std::size_t worst() const {
+    return *std::max_element(count.begin(), count.end(), [this](std::size_t a, std::size_t b) {
+      return still_open(pairs[a], before[a]) < still_open(pairs[b], before[b]);
+    });
+  }
+  /// Of the right one of two, in the mean over the pairs.
+  [[nodiscard]] double p_right(const std::vector<double>& lambda) const {
+    double open = 0, weights = 0;
+    for (const std::size_t p : count) {
+      open += still_open(pairs[p], lambda[p] > before[p] + kGained ? lambda[p] : before[p]);
+      weights += pairs[p].weight;
+    }
+    return 1 - open / weights;
+  }
+};
 
 }  // namespace
 
@@ -179,19 +192,20 @@ Result<HypothesisMenu> hypothesis_menu(const PoseTable& run, const fit::joint::J
     if (std::find(count.begin(), count.end(), p) == count.end()) out.never.push_back(out.hypotheses.pairs[p]);
   if (count.empty())
     for (std::size_t p = 0; p < before->size(); ++p) count.push_back(p);
-  const std::size_t worst = least(*before, count);
+  const Open open{out.hypotheses.pairs, std::move(count), *before};
+  const std::size_t worst = open.worst();
   out.worst = out.hypotheses.pairs[worst];
   out.lambda_before = (*before)[worst];
-  out.p_right_before = criticism::tests::probability_right(out.lambda_before);
+  out.p_right_before = open.p_right(*before);
   for (Tried& one : all) {
-    const double after = one.lambda[least(one.lambda, count)];
-    if (after < out.lambda_before + kGained) continue;
+    const double after = open.p_right(one.lambda);
+    if (after < out.p_right_before + kGained) continue;
     out.steps.push_back({.measurement = {.action = std::string(one.action->text),
                                          .minutes = one.minutes,
                                          .p_right_before = out.p_right_before,
-                                         .p_right_after = criticism::tests::probability_right(after),
+                                         .p_right_after = after,
                                          .lambda_before = out.lambda_before,
-                                         .lambda_after = after},
+                                         .lambda_after = one.lambda[worst]},
                          .poses = std::move(one.poses),
                          .by_the_rig = one.action->by_the_rig && has_table(run),
                          .other_day = one.action->other_day});

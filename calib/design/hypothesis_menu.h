@@ -16,12 +16,12 @@
 /// Each has the coefficients that fit the residual of the run best (one linearisation of the joint fit, as in
 /// calib/discovery). Of two, the one that leaves less is taken as true, and
 ///     lambda_ab = |(I - P_b) z_a gamma_a|^2
-/// is computed on the run with the poses of each action behind it (hypothesis_distance.h). The pair with the
-/// smallest lambda decides; pairs that no action tells apart are told and set aside. Where an action leaves
-/// the attitudes open, those are taken that set the worst pair apart most a minute, one pose after the other.
-///
-/// Actions are ranked by what they add to the worst lambda a minute, as far as criticism::tests::kToldApart:
-/// beyond that, less time is all that is better.
+/// is computed on the run with the poses of each action behind it (hypothesis_distance.h). Pairs that no
+/// action tells apart are told and set aside. Each other pair counts by the product of its probabilities,
+/// P_a P_b: the right one of two is named with
+///     p = sum P_a P_b Phi(sqrt(lambda_ab) / 2) / sum P_a P_b.
+/// Where an action leaves the attitudes open, those are taken that set the pair that is most open apart most
+/// a minute, one pose after the other. Actions are ranked by what they add to p a minute.
 namespace mgtd::calib::design {
 
 struct HypothesisStep {
@@ -37,8 +37,8 @@ struct LeftOut {
 
 struct HypothesisMenu {
   HypothesisFit hypotheses;
-  HypothesisPair worst;  ///< on the run, of those that something tells apart
-  double lambda_before{0};
+  HypothesisPair worst;     ///< most open on the run, of those that something tells apart
+  double lambda_before{0};  ///< of that pair; so in the steps
   double p_right_before{1};
   std::vector<HypothesisStep> steps;  ///< best first; what adds nothing is no step
   std::vector<LeftOut> left_out;

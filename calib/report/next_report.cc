@@ -124,7 +124,9 @@ std::string to_text(const criticism::search::NextReport& r) {
                    shown(r, r.effect), shown(r, r.alternative));
     if (r.assumed)
       out += "neither is large enough to be seen on this run; at the smallest size that would be, ";
-    fmt::format_to(to, "these poses give the right name with probability {:.3f}\n", r.p_right_before);
+    fmt::format_to(to, "{}these poses give the right name with probability {:.3f}\n",
+                   r.hypotheses.size() > 2 ? "between any two of them, weighted by P, " : "",
+                   r.p_right_before);
   }
   if (!r.steps.empty())
     fmt::format_to(to, "{:>8} {:>8}  {:<8} {}\n", "minutes", "p right", "by", "what to measure");

@@ -32,7 +32,7 @@ Result<NextReport> next_among(const PoseTable& table, const fit::FitOptions& opt
     out.never.emplace_back(name_of(all[pair.truth]), name_of(all[pair.other]));
   out.hypotheses = std::move(menu->hypotheses.hypotheses);
   out.left_out = std::move(menu->left_out);
-  out.told_apart = menu->lambda_before >= tests::kToldApart;
+  out.told_apart = menu->p_right_before >= tests::probability_right(tests::kToldApart);
   if (out.told_apart) return out;
   for (design::HypothesisStep& step : menu->steps)
     out.steps.push_back({.measurement = std::move(step.measurement),

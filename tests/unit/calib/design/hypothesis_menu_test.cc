@@ -129,6 +129,22 @@ TEST(HypothesisMenu, PairsThatNothingTellsApartAreSetAside) {
   EXPECT_GT(menu->lambda_before, 0);
 }
 
+/// A pair of two unlikely formulas that little helps must not stand in the way of the likely ones.
+TEST(HypothesisMenu, LikelyPairsCountMost) {
+  PoseTable run = run_with([](const Pose& p, double) { return 3 * *p.t_s / 3600; }, 4);
+  for (Pose& pose : run.poses)
+    for (std::size_t i = 0; i < 4; ++i)
+      pose.T_degC[i] = 20 + 2 * *pose.t_s / 3600 + 0.1 * static_cast<double>(i);
+  std::vector<Hypothesis> hypotheses{formula("t_h"), formula("T_degC - 20"), formula("s2_T_degC - 20")};
+  hypotheses[0].P = 0.5, hypotheses[1].P = 0.45, hypotheses[2].P = 0.05;
+  const auto menu = asked(run, hypotheses);
+  ASSERT_TRUE(menu) << menu.error().text();
+  EXPECT_EQ(menu->worst.truth + menu->worst.other, 1U);
+  ASSERT_NE(step(*menu, "heat step"), nullptr) << "although it does not tell one head from the other";
+  EXPECT_GT(step(*menu, "heat step")->measurement.p_right_after, 0.9);
+  EXPECT_THAT(menu->steps.front().measurement.action, ::testing::Not(HasSubstr("one head after another")));
+}
+
 TEST(HypothesisMenu, OneThatHoldsAnotherIsNoQuestion) {
   std::vector<Hypothesis> hypotheses = kQuartic;
   hypotheses.push_back(formula("(u/50000)^4", "each-axis"));
