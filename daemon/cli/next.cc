@@ -25,11 +25,10 @@ namespace {
 constexpr const char* kNextHelp =
     "Two effects or formulas that look alike on this run may differ under other conditions. Each action of\n"
     "the menu is tried in the model: 24 poses more, and with them the probability that the right one of the\n"
-    "two is named. Of several formulas the two that are hardest to tell apart decide, attitudes are chosen\n"
-    "for what they tell, and the actions stand in the order of what they gain a minute.\n\n"
-    "  mgt next run.mgtrun                                               what the verdict left open, or "
-    "what\n"
-    "                                                                    mgt discover did\n"
+    "two is named. Of several formulas each pair counts by its probabilities, attitudes are chosen for what\n"
+    "they tell, and the actions stand in the order of what they gain a minute.\n\n"
+    "  mgt next run.mgtrun                                               the names that explain left open;\n"
+    "                                                                    else what mgt discover did\n"
     "  mgt next run.mgtrun axis.offset.drift axis.offset.temperature     a pair\n"
     "  mgt next run.mgtrun law1 'kink@s3.z,expr=max(0, T_degC - 24)'     formulas: kept ones, or new\n"
     "  mgt next run.mgtrun s3.z                                          what mgt discover left open there\n"
@@ -81,7 +80,7 @@ Report among(const Result<Question>& asked, const PoseTable& table) {
   return calib::criticism::search::next_among(table, asked->options, asked->hypotheses);
 }
 
-/// What the verdict and the model leave open; where a law is left that is in no library, its formulas.
+/// What the verdict and the model leave open; the formulas of a law where no name accounts for it.
 Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& options,
                  const std::vector<calib::criticism::search::Choice>& doubts) {
   using calib::criticism::search::Finding;
@@ -92,13 +91,10 @@ Report left_open(const store::PoseSource& source, const calib::fit::FitOptions& 
   if (!next) return next;
   if (next->effect.empty() && !doubts.empty())
     return next_about(source.table, search, doubts, *std::move(next));
-  if (next->finding == Finding::bad_data) return next;
-  const bool unnamed =
-      next->effect.empty() || next->finding == Finding::unknown || next->finding == Finding::partial;
+  const bool unexplained = next->finding == Finding::unknown || next->finding == Finding::partial;
+  if (next->finding == Finding::bad_data || (!next->effect.empty() && !unexplained)) return next;
   const auto formulas = question_by_discovery("", source, options);
-  if (formulas && !formulas->hypotheses.empty() && (formulas->believed || unnamed))
-    return among(formulas, source.table);
-  return next;
+  return formulas && !formulas->hypotheses.empty() ? among(formulas, source.table) : next;
 }
 
 Report answer(const NextArguments& args, const store::PoseSource& source,

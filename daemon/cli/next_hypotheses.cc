@@ -108,7 +108,6 @@ Result<Question> question_by_discovery(const std::string& place, const store::Po
   if (found->finding == LawFinding::pass || found->finding == LawFinding::noise_like ||
       found->finding == LawFinding::library)
     return out;
-  out.believed = found->finding != LawFinding::shape_only;
   const auto asked = [&](const calib::discovery::FoundLaw& law) {
     return law.formulas.size() > 1 && (place.empty() || law.formulas.front().where == place);
   };

@@ -15,8 +15,6 @@ namespace mgtd::daemon::cli {
 struct Question {
   calib::fit::FitOptions options;                     ///< the model without the hypotheses
   std::vector<calib::design::Hypothesis> hypotheses;  ///< none: nothing of this kind to ask
-  bool believed{true};  ///< that one of them is the law: nothing is left beside them, and no library effect
-                        ///< does as well
 };
 
 /// Effects of the library by name alone: what explain() compares wherever they act.

@@ -52,7 +52,9 @@ TEST_F(NextLaw, WhatNextAsksForNamesTheRightFormula) {
   ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13), "-o", first}).exit_code, 0);
   EXPECT_EQ(ask({"discover", first, "--quick"}).at("verdict"), "LAW-SET");
 
-  const json next = ask({"next", first, "-o", list});
+  EXPECT_EQ(ask({"next", first}).at("rival"), "axis.transverse@s3.z")
+      << "what explain leaves open comes first";
+  const json next = ask({"next", first, "s3.z", "-o", list});
   EXPECT_EQ(next.at("schema"), "mgt.next/1");
   ASSERT_GE(next.at("rivals").size(), 2U);
   EXPECT_EQ(next.at("rivals").at(0).at("formula"), "z^4 at s3.z");
