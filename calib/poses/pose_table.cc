@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "calib/poses/field_unit.h"
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_list.h"
 #include "calib/poses/table_text.h"
@@ -47,6 +48,17 @@ std::optional<OfSensor> of_sensor(std::string_view name) {
   if (!reading && what != "sd_x_nT" && what != "sd_y_nT" && what != "sd_z_nT" && what != "T_degC")
     return std::nullopt;
   return OfSensor{static_cast<std::size_t>(parse_integer(digits).value_or(0)), reading};
+}
+
+/// What to do about a number that its column cannot hold.
+std::string remedy_of_limits(const PoseColumn& column, double value) {
+  const std::string_view unless = column.required ? "leave the whole pose out when it is wrong"
+                                                  : "leave the cell empty when it was not measured";
+  const bool field = column.name.ends_with("_nT") && column.name.find("sd_") == std::string::npos;
+  const auto unit = field ? field_unit_of(std::abs(value) / kEarthlyField_nT) : std::nullopt;
+  if (!unit) return fmt::format("check unit and column; {}", unless);
+  return fmt::format("the column looks like {}: multiply all of it by {}; if it is this row alone, {}",
+                     unit->name, unit->factor, unless);
 }
 
 constexpr std::array<std::string_view, 3> kReference{"ref_x_nT", "ref_y_nT", "ref_z_nT"};
@@ -299,9 +311,7 @@ Result<Pose> Reader::read_row(const std::vector<TableCell>& cells) {
       return complain(cells[i].column,
                       fmt::format("{} in column {} is not possible: it must be {}", cells[i].text, name,
                                   limits_of(*known_[i]).words()),
-                      known_[i]->required
-                          ? "check unit and column; leave the whole pose out when it is wrong"
-                          : "check unit and column; leave the cell empty when it was not measured");
+                      remedy_of_limits(*known_[i], *value));
     }
     if (known_[i] != nullptr) {
       known_[i]->set(pose, *value);

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "calib/poses/field_unit.h"
 #include "calib/stats/median.h"
 #include "proto/units.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
 
-/// A fluxgate shows the field to a factor of three, whatever its offset; a wrong unit is a thousand away.
-constexpr double kSameUnit = 30;
 /// No known field: readings of this size, in nT, are taken for uT. The field of the Earth is 22 to 67 uT.
 constexpr double kFewest_nT = 10, kMost_nT = 200;
 constexpr double kNearlyAll = 0.9;  ///< of the poses
@@ -33,19 +33,6 @@ std::string sensors_text(const std::vector<std::size_t>& which, std::size_t of) 
   const std::string last = names.back();
   names.pop_back();
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
-}
-
-/// What a reading in `unit` is multiplied by to be in nT; no unit where that is no power of a thousand.
-struct Unit {
-  const char* name{nullptr};
-  const char* factor{""};
-};
-
-Unit unit_of(double ratio) {
-  if (ratio > 1e-3 / kSameUnit && ratio < 1e-3 * kSameUnit) return {"uT", "1000"};
-  if (ratio > 1e-6 / kSameUnit && ratio < 1e-6 * kSameUnit) return {"mT", "1000000"};
-  if (ratio > 1e3 / kSameUnit && ratio < 1e3 * kSameUnit) return {"pT", "0.001"};
-  return {};
 }
 
 /// Median length of a sensor's readings; 0 where they hardly move: a dead sensor has no unit.
@@ -81,7 +68,7 @@ bool field_by_vector(const JointProblem& problem) {
 }
 
 tl::unexpected<Error> wrong_unit(const std::vector<std::size_t>& which, std::size_t of, double size_nT,
-                                 Unit unit) {
+                                 const poses::FieldUnit& unit) {
   return fail(ErrorCode::bad_input,
               fmt::format("the readings of {} look like {}: {:.4g} in the middle pose, in columns of nT",
                           sensors_text(which, of), unit.name, size_nT),
@@ -99,24 +86,24 @@ Result<void> check_units(const JointProblem& problem, double f_nT) {
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   // The total field alone is off: it is the reference that has another unit.
   const bool earthly = *least > 1e4 && *most < 1e5;
-  if (const Unit unit = unit_of(field / *most); earthly && unit.name != nullptr)
+  if (const auto unit = poses::field_unit_of(field / *most); earthly && unit)
     return fail(
         ErrorCode::bad_input,
         fmt::format("the {} looks like {}: {:.4g} where the readings are {:.4g} nT",
-                    field_by_vector(problem) ? "vector reference" : "total field", unit.name, field, *most),
+                    field_by_vector(problem) ? "vector reference" : "total field", unit->name, field, *most),
         fmt::format("multiply {} by {}",
                     field_by_vector(problem) ? "ref_x_nT, ref_y_nT and ref_z_nT (and ref_sd_nT)"
                                              : "f_nT (and f_sd_nT), or what you give with --field,",
-                    unit.factor));
+                    unit->factor));
   std::vector<std::size_t> off;
-  Unit unit;
+  std::optional<poses::FieldUnit> unit;
   for (const std::size_t i : all) {
-    const Unit own = unit_of(size[i] / field);
-    if (own.name == nullptr || (unit.name != nullptr && own.name != unit.name)) continue;
+    const auto own = poses::field_unit_of(size[i] / field);
+    if (!own || (unit && own->name != unit->name)) continue;
     unit = own;
     off.push_back(i);
   }
-  if (!off.empty()) return wrong_unit(off, all.size(), size[off.front()], unit);
+  if (unit) return wrong_unit(off, all.size(), size[off.front()], *unit);
   if (problem.common_field && *least > kFewest_nT && *most < kMost_nT)
     return wrong_unit(all, all.size(), *most, {"uT", "1000"});
   return {};

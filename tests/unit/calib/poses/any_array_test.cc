@@ -140,6 +140,21 @@ TEST(AnyArray, PartOfAReferenceFieldIsRefused) {
       HasSubstr("poses.csv:2:9: 0 in column ref_sd_nT is not possible: it must be above 0"));
 }
 
+TEST(AnyArray, AColumnInAnotherUnitIsNamedAsSuch) {
+  const auto remedy = [](const std::string& f) {
+    return error_of("pose,f_nT" + columns(1) + "\n1," + f + readings(1) + "\n").remedy;
+  };
+  EXPECT_THAT(remedy("53.9"),
+              HasSubstr("the column looks like uT: multiply all of it by 1000; if it is this row "
+                        "alone, leave the cell empty"));
+  EXPECT_THAT(remedy("0.539"), HasSubstr("looks like G: multiply all of it by 100000;"));
+  EXPECT_THAT(remedy("5.39e-5"), HasSubstr("looks like T: multiply all of it by 1000000000;"));
+  EXPECT_THAT(remedy("250000"), HasSubstr("check unit and column"));
+  EXPECT_THAT(
+      error_of("pose" + columns(1) + "\n1,22551407,1,1\n").remedy,
+      HasSubstr("looks like pT: multiply all of it by 0.001; if it is this row alone, leave the whole pose"));
+}
+
 /// Without a vector beside it, a total field of nearly zero is a slip of the unit.
 TEST(AnyArray, ASmallFieldNeedsAReferenceField) {
   EXPECT_THAT(

@@ -38,6 +38,8 @@ std::vector<Row> rows() {
        "the readings of all sensors look like uT", "by 1000"},
       {"readings_in_millitesla", [](PoseTable& run) { scale_sensors(run, 0, 1e-6); },
        "the readings of all sensors look like mT", "by 1000000"},
+      {"readings_in_gauss", [](PoseTable& run) { scale_sensors(run, 0, 1e-5); },
+       "the readings of all sensors look like G", "by 100000"},
       {"one_sensor_in_microtesla", [](PoseTable& run) { scale_sensors(run, 3, 1e-3); },
        "the readings of s4 look like uT", "by 1000"},
       {"readings_in_picotesla", [](PoseTable& run) { scale_sensors(run, 0, 1e3); },
