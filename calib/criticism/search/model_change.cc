@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/criticism/search/step_of_a_source.h"
 #include "calib/criticism/tests/noise.h"
 #include "calib/criticism/tests/residual.h"
 #include "calib/criticism/tests/score.h"
@@ -104,8 +105,9 @@ Result<ModelChange> add_effect(const PoseTable& table, const fit::FitOptions& op
   fit::FitOptions wider = options;
   wider.effects = before->options.effects;
   wider.effects.push_back(effect);
-  const auto after = model_stage(table, wider);
+  auto after = model_stage(table, wider);
   if (!after) return tl::unexpected(after.error());
+  if (auto source = step_of_a_source(table, wider, *before, *after)) after = *std::move(source);
   const effects::EffectPtr& profiled = after->fit.problem.effects.back();
   ModelChange out{.adding = true, .effect = std::string(effect->name()), .spec = profiled->spec()};
   const Fall fall = score_fall(*before, profiled);

@@ -44,7 +44,9 @@ struct ModelChange {
   [[nodiscard]] bool vetoed() const { return !vetoes().empty(); }
 };
 
-/// `options`: the model as it is. Refuses what a fit refuses, and an effect that the model holds already.
+/// `options`: the model as it is. A step of the site without a place becomes the dipole that came, where that
+/// leaves clearly less (step_of_a_source.h). Refuses what a fit refuses, and an effect that the model holds
+/// already.
 [[nodiscard]] Result<ModelChange> add_effect(const PoseTable& table, const fit::FitOptions& options,
                                              const effects::EffectPtr& effect);
 /// `which`: its place in options.effects.

@@ -83,6 +83,22 @@ TEST(ModelChange, TheMomentOfAStepOfTheSiteIsSearched) {
   EXPECT_FALSE(change->vetoed());
 }
 
+/// A magnet that was put down during the run is a step of the site, and no gradient.
+TEST(ModelChange, AStepOfTheSiteIsTheSourceThatMadeIt) {
+  testing::Stage stage = testing::full_stage(3);
+  const PoseTable quiet = testing::planted_run(stage, {}, 3);
+  const double at_s = *quiet.poses[70].t_s - 1;
+  stage.scenario.magnets = {{.at_s = at_s, .moment_Am2 = {0.5, 1, 0.3}, .at_m = {2, 1, -0.5}}};
+  const PoseTable table = testing::planted_run(stage, {}, 3);
+  const auto change = add_effect(table, {}, effect("site.step"));
+  ASSERT_TRUE(change) << change.error().text();
+  const auto spec = effects::EffectSpec::parse(change->spec);
+  ASSERT_TRUE(spec);
+  EXPECT_NEAR(*spec->number("x", 0, -9, 9), 2, 0.1) << change->spec;
+  EXPECT_NEAR(*spec->number("ts", 0, 0, 100), at_s / 3600, 30.0 / 3600) << change->spec;
+  EXPECT_LT(change->rms_after_nT, 1.2 * change->noise_nT) << change->spec;
+}
+
 /// A gradient that nobody knows of leaves fifty times the noise: chi-square falls by hundreds for nothing.
 TEST(ModelChange, InAModelFarOffChanceIsJudgedByWhatIsLeft) {
   Eigen::Matrix3d G;
