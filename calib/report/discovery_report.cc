@@ -131,11 +131,11 @@ json law_json(const FoundLaw& law) {
 }
 
 /// The commands that put what leads into the model.
-std::vector<std::string> commands(const DiscoveryReport& r, const std::string& run,
-                                  const std::vector<std::string>& before,
-                                  const std::vector<std::string>& kept) {
+std::vector<std::string> commands(const DiscoveryReport& r, const std::string& searched,
+                                  const CommandsToModel& to_model, const std::vector<std::string>& kept) {
   std::vector<std::string> out;
   if (!r.accounts_for_everything()) return out;
+  const std::string& run = to_model.run.empty() ? searched : to_model.run;
   for (const std::string& name : kept) out.push_back(fmt::format("mgt add {} {}", name, shell_word(run)));
   for (const FoundLaw& law : kept.empty() ? r.laws : std::vector<FoundLaw>{}) {
     for (const Definition& d : definitions(law.formulas.front())) {
@@ -145,7 +145,7 @@ std::vector<std::string> commands(const DiscoveryReport& r, const std::string& r
       out.push_back(fmt::format("mgt add {} {}", d.name, shell_word(run)));
     }
   }
-  if (!out.empty()) out.insert(out.begin(), before.begin(), before.end());
+  if (!out.empty()) out.insert(out.begin(), to_model.commands.begin(), to_model.commands.end());
   return out;
 }
 
@@ -271,7 +271,7 @@ void tell_law(const FoundLaw& law, std::size_t number, std::size_t laws, std::st
 
 }  // namespace
 
-json to_json(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before,
+json to_json(const DiscoveryReport& r, const std::string& run, const CommandsToModel& to_model,
              const std::vector<std::string>& kept) {
   json laws = json::array();
   for (const FoundLaw& law : r.laws) laws.push_back(law_json(law));
@@ -301,8 +301,8 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
            {"laws", laws},
            {"after", json()},
            {"next", json::array({what_next(r, run, kept)})},
-           {"commands", commands(r, run, before, kept)},
-           {"text", to_text(r, run, before, kept)}};
+           {"commands", commands(r, run, to_model, kept)},
+           {"text", to_text(r, run, to_model, kept)}};
   // The strongest law once more, where a reader of one law looks for it.
   const json first = laws.empty() ? json::object() : laws.front();
   for (const char* key : {"log10_p_search", "stands_out", "d", "covariates", "where", "formulas",
@@ -315,7 +315,7 @@ json to_json(const DiscoveryReport& r, const std::string& run, const std::vector
   return out;
 }
 
-std::string to_text(const DiscoveryReport& r, const std::string& run, const std::vector<std::string>& before,
+std::string to_text(const DiscoveryReport& r, const std::string& run, const CommandsToModel& to_model,
                     const std::vector<std::string>& kept) {
   std::string out = headline(r) + "\n";
   const auto to = std::back_inserter(out);
@@ -346,7 +346,7 @@ std::string to_text(const DiscoveryReport& r, const std::string& run, const std:
   if (const std::string reason = reason_text(r); !reason.empty()) out += "why: " + reason + "\n";
   if (!kept.empty()) fmt::format_to(to, "kept in {}: {}\n", run, fmt::join(kept, ", "));
   out += "next: " + what_next(r, run, kept) + "\n";
-  for (const std::string& command : commands(r, run, before, kept)) out += "  " + command + "\n";
+  for (const std::string& command : commands(r, run, to_model, kept)) out += "  " + command + "\n";
   return out;
 }
 

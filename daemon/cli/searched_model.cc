@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "daemon/run/solver.h"
 #include "proto/shell_word.h"
@@ -18,13 +19,18 @@ bool holds(const std::vector<calib::effects::EffectPtr>& effects, const std::str
 
 }  // namespace
 
-std::vector<std::string> commands_to_model(const std::vector<calib::effects::EffectPtr>& searched,
-                                           const store::PoseSource& source, const std::string& run) {
+calib::report::CommandsToModel commands_to_model(const std::vector<calib::effects::EffectPtr>& searched,
+                                                 const store::PoseSource& source, const std::string& run) {
   const auto kept = run::fit_options(source);
   if (!kept) return {};
-  std::vector<std::string> out;
+  calib::report::CommandsToModel out{.run = run, .commands = {}};
+  if (!source.header) {
+    out.run = std::filesystem::path(run).replace_extension(".mgtrun").string();
+    out.commands.push_back(fmt::format("mgt import {} -o {}", shell_word(run), shell_word(out.run)));
+  }
   const auto command = [&](const char* verb, const calib::effects::EffectPtr& effect) {
-    out.push_back(fmt::format("mgt {} {} {}", verb, shell_word(effect->spec()), shell_word(run)));
+    out.commands.push_back(
+        fmt::format("mgt {} {} {}", verb, shell_word(effect->spec()), shell_word(out.run)));
   };
   for (const calib::effects::EffectPtr& effect : kept->effects)
     if (!holds(searched, effect->spec())) command("drop", effect);

@@ -110,8 +110,9 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
     EXPECT_EQ(whole.at("law").at("verdict"), "LAW") << command;
     EXPECT_EQ(whole.at("law").at("laws").at(0).at("formulas").at(0).at("formula"), "z^4");
     const json& commands = whole.at("law").at("commands");
-    ASSERT_EQ(commands.size(), 2U) << "no effect that stood in for it: " << command;
-    EXPECT_THAT(commands.at(1).get<std::string>(), HasSubstr("mgt add law1 "));
+    ASSERT_EQ(commands.size(), 3U) << "no effect that stood in for it: " << command;
+    EXPECT_EQ(commands.at(0), "mgt import " + table + " -o " + file("strong.mgtrun"));
+    EXPECT_EQ(commands.at(2), "mgt add law1 " + file("strong.mgtrun"));
     EXPECT_EQ(whole.at("law").at("instead_of"), json::array({"axis.quadratic@s3.z"}));
     const json bare = json::parse(run({"mgt", command, table, "--no-law", "--json"}).out, nullptr, false);
     EXPECT_FALSE(bare.contains("law")) << command;
@@ -130,14 +131,19 @@ TEST_F(NextLaw, ExplainAndImproveEndWithTheFormulaOfWhatRemains) {
   }
 }
 
-/// A law stands beside the effects that it was searched beside: those are added first.
+/// A law stands beside the effects that it was searched beside: those are added first. A pose table keeps no
+/// model, and the commands make a run file of it.
 TEST_F(NextLaw, TheCommandsMakeTheModelThatWasSearched) {
   const std::string table = file("strong.csv");
   ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(13, 0.3), "-o", table}).exit_code, 0);
   const json found = ask({"discover", table, "--quick", "--with", "axis.cubic@s1.x"});
   ASSERT_EQ(found.at("verdict"), "LAW");
-  ASSERT_EQ(found.at("commands").size(), 3U);
-  EXPECT_EQ(found.at("commands").at(0), "mgt add axis.cubic@s1.x " + table);
+  ASSERT_EQ(found.at("commands").size(), 4U);
+  EXPECT_EQ(found.at("commands").at(1), "mgt add axis.cubic@s1.x " + file("strong.mgtrun"));
+  for (const json& command : found.at("commands")) {
+    const std::string words = program("mgt") + command.get<std::string>().substr(3);
+    EXPECT_NE(run_program({"/bin/sh", "-c", words}, file("")).exit_code, 2) << command;
+  }
 }
 
 TEST_F(NextLaw, NoFormulaIsLookedForWhereNothingRemains) {
