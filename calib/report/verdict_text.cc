@@ -21,6 +21,8 @@
 #include "calib/report/size_text.h"
 #include "calib/stats/probability.h"
 #include "proto/units.h"
+#include "proto/pose_numbers_text.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -182,12 +184,12 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, 
 
 std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
   if (outliers.empty()) return {};
-  std::set<int> poses;
-  for (const fit::OutlierNode& o : outliers) poses.insert(o.pose);
+  std::set<int> numbers;
+  for (const fit::OutlierNode& o : outliers) numbers.insert(o.pose);
   return fmt::format(
       "{} that the others contradict {} left out, in pose {} (listed at the end).",
       outliers.size() == 1 ? "One observation" : fmt::format("{} observations", outliers.size()),
-      outliers.size() == 1 ? "is" : "are", fmt::join(poses, ", "));
+      outliers.size() == 1 ? "is" : "are", pose_numbers_text(numbers));
 }
 
 /// Names that a law of no library takes the place of.

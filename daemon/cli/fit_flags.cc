@@ -16,6 +16,7 @@
 #include "daemon/cli/in_range.h"
 #include "daemon/run/solver.h"
 #include "daemon/store/pose_numbers.h"
+#include "proto/pose_numbers_text.h"
 #include "proto/units.h"
 
 namespace mgtd::daemon::cli {
@@ -132,7 +133,7 @@ void tell_masked(const store::PoseSource& source) {
   std::set<int> numbers;
   for (const store::MaskedPose& masked : source.masked) numbers.insert(masked.number);
   fmt::print(stderr, "without the masked poses {} (mgt model says why; mgt unmask takes them in again)\n",
-             store::pose_numbers_text(numbers));
+             pose_numbers_text(numbers));
 }
 
 std::vector<std::pair<std::string, std::string>> field_options(const FitFlags& f) {

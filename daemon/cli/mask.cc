@@ -17,6 +17,7 @@
 #include "daemon/cli/kept_run.h"
 #include "daemon/cli/work_progress.h"
 #include "daemon/store/pose_numbers.h"
+#include "proto/pose_numbers_text.h"
 
 namespace mgtd::daemon::cli {
 namespace {
@@ -63,7 +64,7 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
   const auto after = with_progress(
       action, run.options, [&](const calib::fit::FitOptions& told) { return residual_nT(table, told); });
   if (!after && after.error().code != ErrorCode::refused) return report(session, after.error());
-  const std::string spec = store::pose_numbers_text(numbers);
+  const std::string spec = pose_numbers_text(numbers);
   json result{{"because", args.why}};
   result["rms_before_nT"] = before ? json(*before) : json();
   result["rms_after_nT"] = after ? json(*after) : json();
@@ -89,7 +90,7 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
   std::string text = fmt::format("{}: {}{}\n", action == "mask" ? "masked" : "taken in again", spec,
                                  args.why.empty() ? "" : " (" + args.why + ")");
   if (before || after) text += fmt::format("residual {}\n", residual_change(result, "->"));
-  text += fmt::format("masked now: {}\n", masked.empty() ? "none" : store::pose_numbers_text(masked));
+  text += fmt::format("masked now: {}\n", masked.empty() ? "none" : pose_numbers_text(masked));
   if (!after) text += fmt::format("no fit of what is left yet: {}\n", after.error().text());
   print_text(session, text);
   return 0;
@@ -114,10 +115,9 @@ int run_unmask(const Session& session, const MaskArguments& args) {
   run->who = args.who;
   const std::set<int> masked = masked_in(run->source);
   if (!std::includes(masked.begin(), masked.end(), numbers->begin(), numbers->end())) {
-    return report(
-        session,
-        {ErrorCode::usage, fmt::format("not all of {} are masked", store::pose_numbers_text(*numbers)),
-         masked.empty() ? "no pose of this run is" : "masked are " + store::pose_numbers_text(masked)});
+    return report(session,
+                  {ErrorCode::usage, fmt::format("not all of {} are masked", pose_numbers_text(*numbers)),
+                   masked.empty() ? "no pose of this run is" : "masked are " + pose_numbers_text(masked)});
   }
   auto all = store::read_run(args.run, store::Masked::kept);
   if (!all) return report(session, all.error());

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "proto/number.h"
+#include "proto/pose_numbers_text.h"
 
 namespace mgtd::daemon::store {
 namespace {
@@ -40,18 +41,6 @@ Result<std::set<int>> parse_pose_numbers(std::string_view text) {
     if (!first || !last || *last < *first || *last - *first >= kMostNumbers) return refused();
     for (std::int64_t number = *first; number <= *last; ++number) out.insert(static_cast<int>(number));
     at = end + 1;
-  }
-  return out;
-}
-
-std::string pose_numbers_text(const std::set<int>& numbers) {
-  std::string out;
-  for (auto it = numbers.begin(); it != numbers.end();) {
-    const int first = *it;
-    int last = first;
-    while (++it != numbers.end() && *it == last + 1) last = *it;
-    if (!out.empty()) out += ",";
-    out += first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last);
   }
   return out;
 }

@@ -14,6 +14,7 @@
 #include "calib/effects/effect_spec.h"
 #include "daemon/store/pose_numbers.h"
 #include "proto/json_line.h"
+#include "proto/pose_numbers_text.h"
 #include "proto/shell_word.h"
 
 namespace mgtd::daemon::serve::console {
@@ -172,7 +173,7 @@ Result<void> check(const JobVerb& verb, const JobArgument& argument, const json&
   return {};
 }
 
-std::string pose_text(const json& value) { return store::pose_numbers_text(value.get<std::set<int>>()); }
+std::string pose_text(const json& value) { return pose_numbers_text(value.get<std::set<int>>()); }
 
 /// The value as a word.
 std::string word_of(const JobArgument& argument, const json& value) {

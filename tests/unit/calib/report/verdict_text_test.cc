@@ -72,7 +72,10 @@ TEST(Sentence, SaysWhatWasLeftOut) {
   report.outliers.push_back({9, "scalar", 3, "nT", 20});
   report.outliers.push_back({9, "s1.x", 30, "nT", 20});
   EXPECT_THAT(sentence(report),
-              HasSubstr("3 observations that the others contradict are left out, in pose 5, 9"));
+              HasSubstr("3 observations that the others contradict are left out, in pose 5,9"));
+  report.outliers.clear();
+  for (int pose = 20; pose < 50; ++pose) report.outliers.push_back({pose, "pose", 30, "nT", 20});
+  EXPECT_THAT(sentence(report), HasSubstr("are left out, in pose 20-49 (listed at the end)"));
 }
 
 /// The readings tell each pose its own attitude: what is gained are the angles.

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <rapidcheck.h>
 
+#include "proto/pose_numbers_text.h"
+
 namespace mgtd::daemon::store {
 namespace {
 
