@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <variant>
 
 #include "calib/criticism/tests/candidate.h"
 #include "calib/effects/effect_spec.h"
@@ -20,9 +21,9 @@
 #include "calib/report/residual_words.h"
 #include "calib/report/size_text.h"
 #include "calib/stats/probability.h"
-#include "proto/units.h"
 #include "proto/pose_numbers_text.h"
 #include "proto/shell_word.h"
+#include "proto/units.h"
 
 namespace mgtd::calib::report {
 namespace {
@@ -80,7 +81,15 @@ std::string fall_text(const criticism::search::Round& round, const fit::joint::J
                      round.rms_after_nT < round.rms_before_nT ? "falls" : "goes", from, to);
 }
 
-/// Numbers that were searched for, as fitted: " (ts = 0.383 h)".
+/// ", from pose 54 on": the first pose behind a moment; empty where it is not known.
+std::string first_pose_text(const criticism::search::Round& round, double ts_h) {
+  if (round.fit == nullptr) return {};
+  for (const fit::joint::JointPose& pose : round.fit->problem.poses)
+    if (pose.t_h > ts_h) return fmt::format(", from pose {} on", pose.pose->number);
+  return {};
+}
+
+/// Numbers that were searched for, as fitted: " (ts = 0.383 h, from pose 54 on)".
 std::string searched_text(const criticism::search::Round& round) {
   const effects::library::EffectFamily* const family = effects::library::find_family(round.added.effect);
   if (family == nullptr || !family->scan) return {};
@@ -91,7 +100,10 @@ std::string searched_text(const criticism::search::Round& round) {
     if (!spec) continue;
     for (const auto& [name, value] : spec->parameters)
       if (name == family->scan->parameter)
-        numbers.insert(fmt::format("{} = {} {}", name, value, family->scan->unit));
+        numbers.insert(fmt::format("{} = {} {}{}", name, value, family->scan->unit,
+                                   name == "ts"
+                                       ? first_pose_text(round, spec->number("ts", 0, 0, 1e9).value_or(0))
+                                       : std::string()));
   }
   return numbers.empty() ? "" : fmt::format(" ({})", fmt::join(numbers, ", "));
 }
@@ -123,6 +135,24 @@ bool is_named(const criticism::search::Round& round, const criticism::search::Ex
          std::find(r.named.begin(), r.named.end(), round.added.effect) != r.named.end();
 }
 
+/// The commands for effects whose name alone does not say all that was found: a moment, a place, a width.
+std::string commands_text(const criticism::search::ExplainReport& r) {
+  std::vector<std::string> commands;
+  const auto given = r.fit ? effects::specs_of(r.fit->problem.effects) : std::vector<std::string>{};
+  const auto among = [](const std::vector<std::string>& specs, const std::string& spec) {
+    return std::find(specs.begin(), specs.end(), spec) != specs.end();
+  };
+  for (const effects::EffectPtr& effect : r.model) {
+    const std::string text = effect->spec();
+    const auto spec = effects::EffectSpec::parse(text);
+    if (among(given, text) || among(r.stand_ins, text) || !spec || spec->parameters.empty()) continue;
+    if (effects::library::find_family(effect->name()) == nullptr) continue;
+    commands.push_back(fmt::format("mgt add {} RUN", shell_word(text)));
+  }
+  if (commands.empty()) return {};
+  return fmt::format("As it was found it is added by {}.", fmt::join(commands, " and "));
+}
+
 std::string alternatives_text(const criticism::search::Round& round) {
   if (!round.possible.empty()) {
     return fmt::format("These poses do not tell it from {}.", fmt::join(round.possible, ", "));
@@ -145,9 +175,13 @@ std::string left_text(const std::vector<criticism::tests::MapScore>& maps) {
                      stats::p_phrase(m.log10_p));
 }
 
+bool follows_nothing(const std::vector<criticism::tests::MapScore>& maps) {
+  return maps.empty() || maps.front().log10_p > -2;
+}
+
 /// What an operator can do about a residual that no effect of the library stands for.
 std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, bool recording) {
-  if (maps.empty() || maps.front().log10_p > -2)
+  if (follows_nothing(maps))
     return "What to do next: measure a second run with the poses in another order and record what may switch "
            "or change between poses (supplies, motors, temperatures); nothing that was recorded orders this "
            "residual.";
@@ -180,6 +214,24 @@ std::string next_step_text(const std::vector<criticism::tests::MapScore>& maps, 
       "draws this residual; a law of your own: mgt define RUN my.law '{}' {}, then mgt explain "
       "again.",
       example.formula, example.options);
+}
+
+/// What is left and what to do about it. Maps beside effects that only describe a law of no library show
+/// nothing of that law.
+std::string rest_text(const criticism::search::ExplainReport& r,
+                      const std::vector<criticism::tests::MapScore>& maps, bool recording) {
+  if (r.formulas_account)
+    return r.named.empty() ? "A formula accounts for it." : "A formula accounts for the rest.";
+  const bool described = std::any_of(r.notes.begin(), r.notes.end(), [](const auto& note) {
+    return std::holds_alternative<criticism::search::LawOfNoLibrary>(note);
+  });
+  if (described && follows_nothing(maps))
+    return "What to do next: mgt discover RUN looks for the formula of a law that is in no library; mgt "
+           "report "
+           "draws this residual.";
+  std::string out = left_text(maps);
+  if (!out.empty()) out += " ";
+  return out + next_step_text(maps, recording);
 }
 
 std::string outliers_text(const std::vector<fit::OutlierNode>& outliers) {
@@ -242,13 +294,11 @@ std::string sentence(const criticism::search::ExplainReport& r) {
     case criticism::search::Finding::unknown:
       if (!r.stand_ins.empty()) break;
       parts.emplace_back("Something is there, and no effect of the library looks like it.");
-      parts.push_back(left_text(r.maps));
-      parts.push_back(next_step_text(r.maps, recording));
+      parts.push_back(rest_text(r, r.maps, recording));
       break;
     case criticism::search::Finding::partial:
       if (!r.stand_ins.empty() || r.left == criticism::search::Finding::pass) break;
-      parts.push_back(left_text(r.maps_left));
-      parts.push_back(next_step_text(r.maps_left, recording));
+      parts.push_back(rest_text(r, r.maps_left, recording));
       break;
     case criticism::search::Finding::ambiguous:
       if (!r.next.empty()) {
@@ -261,11 +311,17 @@ std::string sentence(const criticism::search::ExplainReport& r) {
       break;
     case criticism::search::Finding::explained:
       parts.emplace_back("Nothing else stands out after that. The name is a hypothesis about the cause.");
+      parts.push_back(commands_text(r));
       break;
     default:
       break;
   }
-  for (const std::string& note : note_texts(r.notes)) {
+  std::vector<criticism::search::ExplainNote> notes = r.notes;
+  if (r.formulas_account || !r.stand_ins.empty())  // nothing is left that could be a memory
+    std::erase_if(notes, [](const auto& note) {
+      return std::holds_alternative<criticism::search::TablePathUnknown>(note);
+    });
+  for (const std::string& note : note_texts(notes)) {
     // A user's formula has any name.
     const bool named =
         std::any_of(r.candidates.begin(), r.candidates.end(),

@@ -87,6 +87,7 @@ int run_explain(const Session& session, const ExplainArguments& args) {
                        ? std::nullopt
                        : law_of_the_rest(source->table, *options, explained->model, explained->finding);
   if (law) calib::criticism::search::take_back_stand_ins(law->instead_of, *explained);
+  explained->formulas_account = law && law->found && law->found->accounts_for_everything();
   nlohmann::json out = calib::report::to_json(*explained);
   if (auto drawn = add_figures(args, source->table, wanted, *explained, out); !drawn)
     return report(session, drawn.error());

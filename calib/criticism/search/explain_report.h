@@ -39,6 +39,8 @@ struct ExplainReport {
   /// Specs of effects that were found and are not named: formulas of no library account for everything
   /// without them (stand_ins.h).
   std::vector<std::string> stand_ins{};
+  /// Set by who looked for them: formulas account for what is left.
+  bool formulas_account{false};
   Finding left{Finding::pass};  ///< PASS, UNKNOWN or PARTIAL: what stands out after the last round
   std::vector<Round> rounds{};
   std::vector<tests::MapScore> maps{};       ///< of the model that was asked about

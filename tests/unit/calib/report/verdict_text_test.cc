@@ -11,6 +11,7 @@
 namespace mgtd::calib::report {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -108,6 +109,49 @@ TEST(Sentence, SaysWhatTheResidualDidAndWhatWasSearchedFor) {
               HasSubstr("With it in the model (ts = 0.25 h) the residual falls from 9.5 to 0.31 nT"));
   EXPECT_THAT(told(0.5071, 0.5069), HasSubstr("the residual stays at 0.507 nT"));
   EXPECT_THAT(told(9.46, 9.51), HasSubstr("the residual goes from 9.46 to 9.51 nT"));
+}
+
+/// A moment and a place are not in the name.
+TEST(Sentence, TellsTheWholeCommandOfWhatWasSearchedFor) {
+  criticism::search::ExplainReport report;
+  report.finding = criticism::search::Finding::explained;
+  report.model = {*effects::library::make_effect("axis.cubic@s1.y"),
+                  *effects::library::make_effect("site.step,ts=0.25,x=2,y=1,z=-0.5")};
+  EXPECT_THAT(sentence(report),
+              HasSubstr("As it was found it is added by mgt add site.step,ts=0.25,x=2,y=1,z=-0.5 RUN."));
+  report.model.pop_back();
+  EXPECT_THAT(sentence(report), Not(HasSubstr("mgt add")));
+}
+
+TEST(Sentence, TellsFromWhichPoseOn) {
+  const Pose before{.number = 53}, after{.number = 54};
+  auto fit = std::make_shared<fit::joint::JointFit>();
+  fit->problem.poses.resize(2);
+  fit->problem.poses[0].pose = &before, fit->problem.poses[0].t_h = 0.2;
+  fit->problem.poses[1].pose = &after, fit->problem.poses[1].t_h = 0.3;
+  criticism::search::Round round{.added = {.effect = "site.step", .where = "site"}};
+  round.model = {*effects::library::make_effect("site.step,ts=0.25")};
+  round.fit = fit;
+  criticism::search::ExplainReport report;
+  report.rounds = {round};
+  EXPECT_THAT(sentence(report), HasSubstr("(ts = 0.25 h, from pose 54 on)"));
+}
+
+/// Maps beside effects that stand in for a law show nothing of it, and a formula leaves nothing to look for.
+TEST(Sentence, GivesNoAdviceBesideALaw) {
+  criticism::search::ExplainReport report;
+  report.finding = report.left = criticism::search::Finding::partial;
+  report.named = {"axis.cubic"};
+  report.maps_left = {{.map = "battery_V", .where = "s3.y", .log10_p = -1.1}};
+  EXPECT_THAT(sentence(report), HasSubstr("nothing that was recorded orders this residual"));
+  report.notes = {criticism::search::LawOfNoLibrary{"s3.z", {"axis.cubic"}},
+                  criticism::search::TablePathUnknown{}};
+  EXPECT_THAT(sentence(report),
+              AllOf(Not(HasSubstr("nothing that was recorded")), Not(HasSubstr("battery_V")),
+                    HasSubstr("mgt discover RUN"), HasSubstr("axis.hysteresis")));
+  report.formulas_account = true;
+  EXPECT_THAT(sentence(report), AllOf(HasSubstr("A formula accounts for the rest."),
+                                      Not(HasSubstr("What to do next")), Not(HasSubstr("axis.hysteresis"))));
 }
 
 /// A law of no library: names that take away a tenth of it are no causes.
