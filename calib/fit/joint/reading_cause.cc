@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace mgtd::calib::fit::joint {
 
@@ -24,7 +25,29 @@ std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel) {
   return out;
 }
 
+namespace {
+
+/// The largest reading of its channel, one way or the other, in whose dwell nothing moved though it moved in
+/// others.
+bool stands_still_at_the_end(const JointProblem& problem, std::size_t pose, int channel) {
+  const auto axis = std::div(channel, 3);
+  const auto sd_nT = [&](const JointPose& p) {
+    return p.pose->sd_nT.at(static_cast<std::size_t>(axis.quot)).at(static_cast<std::size_t>(axis.rem));
+  };
+  const JointPose& own = problem.poses[pose];
+  if (sd_nT(own) != 0.0) return false;
+  bool moves = false;
+  for (const JointPose& other : problem.poses) {
+    if (std::abs(other.y_nT[channel]) > std::abs(own.y_nT[channel])) return false;
+    moves = moves || sd_nT(other).value_or(0) > 0;
+  }
+  return moves;
+}
+
+}  // namespace
+
 std::string cause_of(const JointProblem& problem, std::size_t pose, int channel) {
+  if (stands_still_at_the_end(problem, pose, channel)) return "saturated";
   const std::vector<std::size_t> stop = at_the_stop(problem, channel);
   if (std::find(stop.begin(), stop.end(), pose) != stop.end()) return "saturated";
   const auto same = [&](std::size_t other) {

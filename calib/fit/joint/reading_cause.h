@@ -15,7 +15,8 @@ namespace mgtd::calib::fit::joint {
 /// they count together.
 [[nodiscard]] std::vector<std::size_t> at_the_stop(const JointProblem& problem, int channel);
 
-/// "saturated", "stuck" (the same value as in the pose before or after), or empty.
+/// "saturated" (at the stop, or alone at an end of its channel without any scatter in its dwell), "stuck"
+/// (the same value as in the pose before or after), or empty.
 [[nodiscard]] std::string cause_of(const JointProblem& problem, std::size_t pose, int channel);
 
 /// "a source that came and went", for whole poses without another cause, three or more in a row, where the

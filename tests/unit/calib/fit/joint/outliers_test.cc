@@ -92,6 +92,20 @@ TEST(Outliers, NameAnAxisThatIsSaturatedAndOneThatIsStuck) {
   EXPECT_LT(fit->noise_nT(), 1.1);
 }
 
+/// One reading at the rail: nothing moves in its dwell.
+TEST(Outliers, NameASingleSaturatedReading) {
+  PoseTable table = clean_table();
+  for (Pose& pose : table.poses) pose.n = 1, pose.sd_nT.assign(4, {1.0, 1.0, 1.0});
+  table.poses[60].y_nT[3][2] = 100'000;
+  const auto cause = [&table] {
+    const auto fit = fit_joint(table, {});
+    return fit && fit->outliers.size() == 1 ? fit->outliers.front().cause : "not one outlier";
+  };
+  EXPECT_EQ(cause(), "");
+  table.poses[60].sd_nT[3][2] = 0.0;
+  EXPECT_EQ(cause(), "saturated");
+}
+
 /// The range has two ends.
 TEST(Outliers, NameAnAxisThatIsAtEitherRail) {
   PoseTable table = clean_table();
