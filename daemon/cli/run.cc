@@ -38,7 +38,7 @@ struct RunArguments {
 
 int print_end(const Session& session, const RunStatus& run) {
   if (session.json) print_json(nlohmann::json(to_json(run)));
-  if (!run.judged.empty()) fmt::print(stderr, "{}\n", run.judged);
+  if (run.message.find(run.judged) == std::string::npos) fmt::print(stderr, "{}\n", run.judged);
   fmt::print(stderr, "{}: {}\n", name(run.state), run.message);
   if (run.state == RunState::paused && run.message.find("mgt run resume") == std::string::npos)
     fmt::print(stderr, "mgt run resume goes on with it, mgt run abort ends it\n");

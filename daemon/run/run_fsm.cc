@@ -194,7 +194,9 @@ void RunFsm::on(const CalibrationProposed& proposed) {
     return finish(RunState::failed,
                   fmt::format("calibration {} could not be kept: {}", id, proposed.result.error().text()));
   std::string said = fmt::format("calibration {} is proposed: accept it to make it active", id);
-  if (!left_over.empty()) said += fmt::format(". But {}: mgt explain says what is missing", left_over);
+  if (!left_over.empty())
+    said += fmt::format(". But {}: {}", left_over,
+                        known_.judged.empty() ? "mgt explain says what is missing" : known_.judged);
   finish(RunState::done, said, id);
 }
 

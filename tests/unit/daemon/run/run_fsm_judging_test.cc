@@ -47,6 +47,19 @@ TEST(RunFsmJudging, MeasuresWhatIsAskedForAndIsJudgedAgain) {
   EXPECT_EQ(bench.judgements.back().judgement.found, "EXPLAINED: a");
 }
 
+/// What is missing was found already.
+TEST(RunFsmJudging, ARunThatIsExplainedDoesNotSendToExplain) {
+  RunBench bench(bench_plan(3), until_explained());
+  ask_once(bench);
+  bench.solver = [] {
+    return daemon::run::Solution{true, "cal-1", {}, {}, "the model leaves something out"};
+  };
+  ASSERT_TRUE(bench.run(600));
+  EXPECT_THAT(bench.finished->message,
+              ::testing::AllOf(::testing::EndsWith("But the model leaves something out: EXPLAINED: a; clear"),
+                               ::testing::Not(::testing::HasSubstr("mgt explain"))));
+}
+
 /// A crash in between finds the plan that the table moves by.
 TEST(RunFsmJudging, ThePlanIsStoredBeforeTheTableMoves) {
   RunBench bench(bench_plan(3), until_explained());
