@@ -12,6 +12,7 @@
 #include "calib/effects/laws/live_memory.h"
 #include "calib/effects/laws/run_memory.h"
 #include "calib/effects/library/library.h"
+#include "calib/poses/pose_table.h"
 #include "calib/report/choice_json.h"
 #include "calib/report/choice_text.h"
 #include "calib/report/explain_figures.h"
@@ -238,6 +239,11 @@ int run_model(const Session& session, const ModelArguments& args) {
   if (!source) return report(session, source.error());
   const auto model = store::current_model(*steps);
   const auto masked = store::masked_poses(*steps);
+  const std::string here = calib::poses::data_hash(source->table);
+  // Masks make other data of a run: what was found on it before them is no formula of another run.
+  const auto not_confirmed = [&](const store::Definition& d) {
+    return d.exploratory() && masked.empty() && d.found_on != here;
+  };
   if (session.json) {
     json history = json::array();
     for (const store::ModelStep& s : *steps) history.push_back(step_json(s));
@@ -246,6 +252,7 @@ int run_model(const Session& session, const ModelArguments& args) {
       formulas.push_back({{"name", d.name},
                           {"spec", d.spec},
                           {"exploratory", d.exploratory()},
+                          {"not_confirmed", not_confirmed(d)},
                           {"discovered", d.discovered ? json(d.discovered->text()) : json()}});
     print_json({{"schema", "mgt.model/1"},
                 {"model", model},
@@ -265,7 +272,10 @@ int run_model(const Session& session, const ModelArguments& args) {
   text += fmt::format("the model: {}\n", model_text(model));
   for (const store::MaskedPose& m : masked) text += fmt::format("masked: pose {}: {}\n", m.number, m.because);
   for (const store::Definition& d : source->definitions)
-    text += fmt::format("formula: {}{}{}\n", d.spec, d.exploratory() ? " (exploratory)" : "",
+    text += fmt::format("formula: {}{}{}\n", d.spec,
+                        not_confirmed(d)  ? " (not confirmed here)"
+                        : d.exploratory() ? " (exploratory)"
+                                          : "",
                         d.discovered ? "; " + d.discovered->text() : "");
   print_text(session, text);
   return 0;

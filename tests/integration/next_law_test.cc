@@ -79,10 +79,10 @@ TEST_F(NextLaw, FormulasEffectsAndPlacesCanBeNamed) {
   EXPECT_THAT(pair.at("effect").get<std::string>(), HasSubstr("four@s3.z"));
   EXPECT_EQ(pair.at("rival"), "axis.quadratic@s3.z") << "where the formula acts";
   EXPECT_GE(ask({"next", first, "s3.z"}).at("rivals").size(), 2U);
-  const Finished elsewhere = run({"mgt", "next", first, "s1.x"});
-  EXPECT_EQ(elsewhere.exit_code, 1);
   const json apart = ask({"next", first, "four@s3.z,level=axis,expr=(u/50000)^4", "axis.offset.drift@s3.z"});
   EXPECT_THAT(apart.at("text").get<std::string>(), HasSubstr("tell them apart: there is nothing to settle"));
+  const Finished elsewhere = run({"mgt", "next", first, "s1.x"});
+  EXPECT_EQ(elsewhere.exit_code, 1);
   EXPECT_THAT(elsewhere.err, HasSubstr("no two formulas open at s1.x"));
 
   // A formula of the model that was chosen in doubt is asked about against what could stand in its place.
@@ -180,6 +180,12 @@ TEST_F(NextLaw, WhatDiscoverKeepsIsConfirmedByASecondRunAndStandsInTheReport) {
   const json confirmed = ask({"define", run2, "law1", "--from", run1});
   EXPECT_EQ(confirmed.at("confirmed"), true);
   EXPECT_EQ(confirmed.at("discovered"), formula.at("discovered"));
+  const std::string quiet = file("quiet.csv"), run3 = file("quiet.mgtrun");
+  ASSERT_EQ(run({"mgt-rig", "table", "--scenario", scenario(14, 0), "-o", quiet}).exit_code, 0);
+  ASSERT_EQ(run({"mgt", "import", quiet, "-o", run3}).exit_code, 0);
+  EXPECT_EQ(run({"mgt", "define", run3, "law1", "--from", run1}).exit_code, 1);
+  EXPECT_THAT(run({"mgt", "model", run3}).out, HasSubstr(" (not confirmed here); found by mgt discover"));
+  EXPECT_THAT(run({"mgt", "model", run1}).out, HasSubstr(" (exploratory); found by mgt discover"));
   EXPECT_EQ(ask({"discover", run1, "--keep"}).at("kept"), json::array({"law1"})) << "the same again";
   const json added = ask({"add", "law1", run1});
   EXPECT_THAT(added.at("open").get<std::string>(), HasSubstr("max(0"));
