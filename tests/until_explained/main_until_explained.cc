@@ -38,8 +38,8 @@ struct Game {
 };
 
 /// What a look says of a law of the library: its name alone, its name among others, no name, or another one.
-/// A law of no library is right where no effect is named for it; names for a part of it (PARTIAL) count as
-/// such.
+/// A law of no library is right where no effect is named for it, whatever formula is; names for a part of it
+/// (PARTIAL) count as such.
 Said said(const Game& game, const std::string& found) {
   const bool explained = found.starts_with("EXPLAINED"), named = found.find(game.hidden) != std::string::npos;
   if (!game.in_library)
@@ -118,10 +118,14 @@ std::string counts(const std::vector<Game>& games, bool in_library) {
     std::array<int, 4> sums{};
     int n = 0;
     for (const Game& game : games) {
-      if (game.in_library != in_library || game.judgements.empty()) continue;
+      if (game.in_library != in_library) continue;
+      ++n;
+      if (game.judgements.empty()) {
+        ++sums.at(static_cast<std::size_t>(Said::open));
+        continue;
+      }
       const auto& look = last ? game.judgements.back() : game.judgements.front();
       ++sums.at(static_cast<std::size_t>(said(game, look.found)));
-      ++n;
     }
     out += fmt::format("| {} |", last ? "last" : "first");
     for (const int sum : sums) out += fmt::format(" {} |", calib::testing::percent(sum, n));
@@ -148,8 +152,9 @@ std::string page(const std::vector<Game>& games) {
   std::sort(minutes.begin(), minutes.end());
   std::string out =
       "## Effects of the library\n\n" + counts(games, true) + "\n## Laws of no library\n\n" +
-      "Right: no effect is named for it. Among others: PARTIAL, effects are named that describe a part of "
-      "it.\n\n" +
+      "Right: no effect is named for it, the verdict is neither EXPLAINED nor PARTIAL; whether the formula "
+      "is the hidden law is not counted here, and stands in the list below. Among others: PARTIAL, effects "
+      "are named that describe a part of it. Open: the run did not end.\n\n" +
       counts(games, false) +
       fmt::format("\n{} of {} runs measured more; of those the median took {:.0f} minutes beside the plan.\n",
                   minutes.size(), games.size(), minutes.empty() ? 0 : minutes[minutes.size() / 2]);
