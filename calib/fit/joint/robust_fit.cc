@@ -232,6 +232,7 @@ RobustFit without_stretches(JointProblem& problem, RobustFit fit, double most_le
 }
 
 /// Of the field: no law that a model misses leaves as much, but a fit that a gross reading has drawn away.
+/// The samples of a recording may scatter as far.
 constexpr double kLost = 0.01;
 
 /// The better of the fits from all poses and from those that agree.
@@ -250,7 +251,7 @@ Result<RobustFit> from_either(JointProblem& problem, Result<JointState> start, d
     }
   }
   const bool suspicious = !plain || plain->outliers.any() || plain->outliers.too_many() > 0 ||
-                          plain->residuals.residual_nT() > kLost * f_nT;
+                          (!is_recording(problem) && plain->residuals.residual_nT() > kLost * f_nT);
   if (most_left_out <= 0 || (!suspicious && !looks_spoilt(all.y_nT))) return plain;
   auto agreed = from_agreeing(other, all, f_nT, noise, most_left_out);
   if (!agreed) return plain;
