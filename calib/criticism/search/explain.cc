@@ -173,7 +173,10 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   note_absurd_sizes(search, criticism, out);
   const bool described = take_back_what_describes_a_recording(out, criticism);
   if (memory || memory_may_be_it(search, out)) out.notes.emplace_back(TablePathUnknown{});
-  if (!out.rounds.empty()) out.detectable = detectable(criticism);
+  if (!out.rounds.empty()) {
+    out.detectable = detectable(criticism);
+    out.outliers = out.rounds.back().fit->outliers;
+  }
   share_what_fell(out);
   out.maps_left = described ? out.maps : criticism.maps;
   out.model = out.rounds.empty() ? search.given : out.rounds.back().model;

@@ -49,8 +49,8 @@ struct ExplainReport {
   double noise_nT{0}, residual_nT{0};
   double chi2{0}, dof{0};
   double omnibus_log10_p{0};
-  double families{1};  ///< independent ones, by draws
-  std::vector<fit::OutlierNode> outliers{};
+  double families{1};                           ///< independent ones, by draws
+  std::vector<fit::OutlierNode> outliers{};     ///< left out beside the names that were found
   std::vector<tests::Detectable> detectable{};  ///< beside the model after the rounds
   std::vector<tests::Untestable> untestable{};
   std::optional<tests::ConfusionMatrix> confusion{};  ///< of the model that was asked about

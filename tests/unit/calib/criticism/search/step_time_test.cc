@@ -46,6 +46,8 @@ TEST(StepTime, AStepWithinADwellIsNotBadData) {
     EXPECT_EQ(r.finding, Finding::explained) << report::sentence(r);
     EXPECT_EQ(r.named, std::vector<std::string>{"axis.offset.step"});
     EXPECT_LT(r.rounds.back().rms_after_nT, 1.1 * kNoise_nT);
+    ASSERT_FALSE(r.outliers.empty());
+    for (const fit::OutlierNode& left_out : r.outliers) EXPECT_EQ(left_out.pose, 115);
   }
 }
 
