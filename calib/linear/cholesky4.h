@@ -7,8 +7,9 @@
 ///
 /// A joint fit factors one for each pose in each iteration. Eigen's LLT goes through its rows in loops of
 /// unknown length and divides by the diagonal again and again; with the lengths known and the diagonal
-/// inverted once this takes less than half the time (`bench`: factor_and_solve). Of a matrix that is
-/// not positive definite the results are not finite.
+/// inverted once this takes less than half the time (`bench`: factor_and_solve). An
+/// unknown that rounding leaves no information about, after those before it, is held: whiten() and solve()
+/// give zero for it.
 namespace mgtd::calib::linear {
 
 class Cholesky4 {
@@ -18,7 +19,7 @@ class Cholesky4 {
     for (int j = 0; j < 4; ++j) {
       double square = H(j, j);
       for (int k = 0; k < j; ++k) square -= L_(j, k) * L_(j, k);
-      inverse_[j] = 1 / std::sqrt(square);
+      inverse_[j] = square > 0 ? 1 / std::sqrt(square) : 0;
       for (int i = j + 1; i < 4; ++i) {
         double product = H(i, j);
         for (int k = 0; k < j; ++k) product -= L_(i, k) * L_(j, k);
