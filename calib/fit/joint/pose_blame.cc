@@ -196,10 +196,9 @@ Rows PoseBlame::of(std::size_t k, double strictness) {
   if (is_turned(whole_, state_.nuisances[k])) {  // seen from the table's angles less may be to blame
     at_.nuisances.front() = at_the_table(whole_, state_);
     const Rows from_table = readings_of(strictness);
-    if (from_table.count() <= out.count())
-      out = from_table;
-    else
-      at_.nuisances.front() = state_.nuisances[k];
+    const bool fewer = from_table.count() <= out.count();
+    if (fewer) out = from_table;
+    at_.nuisances.front() = fewer ? at_the_table(whole_, state_) : state_.nuisances[k];
   }
   if (whole_.has_angles && !(out.count() >= static_cast<std::size_t>(channels))) {
     const Trial rest = without(out);
