@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "calib/fit/joint/joint_solver.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/linear/ldlt.h"
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
@@ -202,7 +203,7 @@ Eigen::MatrixXd information_of(const JointProblem& problem, const JointState& st
   pose.has_angles = problem.has_angles;
   pose.weight.setConstant(problem.poses.front().weight.maxCoeff());
   one.poses = {pose};
-  JointState at = state;
+  JointState at = without_poses(state);
   at.nuisances = {Nuisance(0, 0, 0, f_nT)};
   if (!pose.has_angles) at.nuisances.front().head<3>() = pose.T * state.direction * f_nT;
   Eigen::MatrixXd S = reduce(one, at, 0).S;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/fit/joint/reading_cause.h"
+#include "calib/fit/joint/without_poses.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -215,9 +216,9 @@ std::vector<OutlierNode> Outliers::nodes(const JointProblem& problem, const Join
   for (std::size_t k = 0; k < left_out_.size(); ++k) {
     const Rows& rows = left_out_[k];
     if (rows.none()) continue;
-    JointProblem alone = problem;
+    JointProblem alone = without_poses(problem);
     alone.poses = {problem.poses[k]};
-    JointState at = state;
+    JointState at = without_poses(state);
     at.nuisances = {state.nuisances[k]};
     const int channels = problem.channels(), sensor = whole_sensor(rows, channels);
     const auto together = [&](std::string where, int first, int count) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/fit/joint/turned_pose.h"
+#include "calib/fit/joint/without_poses.h"
 #include "calib/linear/cholesky4.h"
 #include "calib/stats/median.h"
 #include "calib/stats/probability.h"
@@ -100,7 +101,12 @@ double BlameLimits::excess(const Observations& t) const {
 }
 
 PoseBlame::PoseBlame(const JointProblem& problem, const JointState& state, const BlameLimits& limits)
-    : alone_(problem), at_(state), problem_(problem), state_(state), limits_(limits), model_(problem, state) {
+    : alone_(without_poses(problem)),
+      at_(without_poses(state)),
+      problem_(problem),
+      state_(state),
+      limits_(limits),
+      model_(problem, state) {
   alone_.poses.resize(1);
   at_.nuisances.resize(1);
 }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "calib/linear/cholesky4.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::fit::joint {
 namespace {
@@ -20,45 +22,71 @@ double freedom(const Eigen::Matrix<double, 1, kNuisances>& row, const linear::Ch
 struct NoiseSums {
   calibration::AxisNoise squares, freedom;
   double attitude_squares{0}, attitude_trace{0};
-  int attitudes{0};
+  int attitudes{0}, readings{0}, scalars{0};
+  double squares_nT2{0}, all_freedom{0};
+
+  explicit NoiseSums(int sensors) : squares(calibration::AxisNoise::Zero(sensors, 3)), freedom(squares) {}
+
+  void add(const NoiseSums& more) {
+    squares += more.squares;
+    freedom += more.freedom;
+    attitude_squares += more.attitude_squares;
+    attitude_trace += more.attitude_trace;
+    attitudes += more.attitudes;
+    readings += more.readings;
+    scalars += more.scalars;
+    squares_nT2 += more.squares_nT2;
+    all_freedom += more.all_freedom;
+  }
 };
 
-void observe_readings(const JointPose& pose, const PoseBlocks& b, const linear::Cholesky4& H, Eigen::Index k,
-                      NoiseSums& sums, PoseResiduals& out) {
-  for (int c = 0; c < pose.y_nT.size(); ++c) {
-    if (!(pose.weight[c] > 0)) continue;
-    const double free = freedom(b.N.row(c), H);
-    sums.squares(c / 3, c % 3) += b.residual[c] * b.residual[c];
-    sums.freedom(c / 3, c % 3) += free;
-    ++out.readings;
-    out.squares_nT2 += std::pow(b.residual[c] / pose.weight[c], 2);
-    out.freedom += free;
-    if (free > kNothing) out.t(c, k) = static_cast<float>(std::abs(b.residual[c]) / std::sqrt(free));
+/// One pose of the sums, and its column of t.
+class PoseColumn {
+ public:
+  PoseColumn(const JointPose& pose, const PoseBlocks& blocks, NoiseSums& sums, Eigen::Ref<Eigen::VectorXf> t)
+      : pose_(pose), blocks_(blocks), H_(blocks.H), sums_(sums), t_(t) {}
+
+  void observe_readings() {
+    for (int c = 0; c < pose_.y_nT.size(); ++c) {
+      if (!(pose_.weight[c] > 0)) continue;
+      const double free = freedom(blocks_.N.row(c), H_), residual = blocks_.residual[c];
+      sums_.squares(c / 3, c % 3) += residual * residual;
+      sums_.freedom(c / 3, c % 3) += free;
+      sums_.all_freedom += free;
+      ++sums_.readings;
+      sums_.squares_nT2 += std::pow(residual / pose_.weight[c], 2);
+      if (free > kNothing) t_[c] = static_cast<float>(std::abs(residual) / std::sqrt(free));
+    }
   }
-}
 
-void observe_scalar(const JointProblem& problem, const JointPose& pose, const PoseBlocks& b,
-                    const linear::Cholesky4& H, Eigen::Index k, PoseResiduals& out) {
-  if (!(pose.f_weight > 0) || problem.common_field) return;
-  ++out.scalars;
-  const double free = freedom(b.scalar.nuisance, H);
-  if (free > kNothing)
-    out.t(out.scalar_row(), k) = static_cast<float>(std::abs(b.scalar.residual) / std::sqrt(free));
-}
+  void observe_scalar(bool common_field) {
+    if (!(pose_.f_weight > 0) || common_field) return;
+    ++sums_.scalars;
+    const double free = freedom(blocks_.scalar.nuisance, H_);
+    if (free > kNothing)
+      t_[t_.size() - 2] = static_cast<float>(std::abs(blocks_.scalar.residual) / std::sqrt(free));
+  }
 
-void observe_attitude(const JointPose& pose, const Nuisance& x, const linear::Cholesky4& H, Eigen::Index k,
-                      NoiseSums& sums, PoseResiduals& out) {
-  if (!pose.has_angles || pose.attitude_weight <= kLooseAttitude_per_rad) return;
-  const double w2 = pose.attitude_weight * pose.attitude_weight;
-  const double posterior =
-      w2 * H.solve(Eigen::Matrix4d(Eigen::Matrix4d::Identity())).diagonal().head<3>().sum();
-  const double squares = w2 * x.head<3>().squaredNorm();
-  sums.attitude_squares += squares;
-  sums.attitude_trace += posterior;
-  ++sums.attitudes;
-  if (3 - posterior > kNothing)
-    out.t(out.attitude_row(), k) = static_cast<float>(std::sqrt(2 * squares / (3 - posterior)));
-}
+  void observe_attitude(const Nuisance& x) {
+    if (!pose_.has_angles || pose_.attitude_weight <= kLooseAttitude_per_rad) return;
+    const double w2 = pose_.attitude_weight * pose_.attitude_weight;
+    const double posterior =
+        w2 * H_.solve(Eigen::Matrix4d(Eigen::Matrix4d::Identity())).diagonal().head<3>().sum();
+    const double squares = w2 * x.head<3>().squaredNorm();
+    sums_.attitude_squares += squares;
+    sums_.attitude_trace += posterior;
+    ++sums_.attitudes;
+    if (3 - posterior > kNothing)
+      t_[t_.size() - 1] = static_cast<float>(std::sqrt(2 * squares / (3 - posterior)));
+  }
+
+ private:
+  const JointPose& pose_;
+  const PoseBlocks& blocks_;
+  const linear::Cholesky4 H_;
+  NoiseSums& sums_;
+  Eigen::Ref<Eigen::VectorXf> t_;
+};
 
 /// Freedom of all attitudes together: the posterior traces leave 2 a pose where the prior is weak, and the
 /// common rotation (3) and the site direction (2) are fitted to them.
@@ -76,18 +104,24 @@ PoseResiduals pose_residuals(const JointProblem& problem, const JointState& stat
   PoseResiduals out;
   out.t.setZero(problem.channels() + 2, static_cast<Eigen::Index>(problem.poses.size()));
   const PoseModel model(problem, state);
-  PoseBlocks b;
-  NoiseSums sums;
-  sums.squares = sums.freedom = calibration::AxisNoise::Zero(problem.sensors(), 3);
+  std::vector<NoiseSums> parts(linear::parts_of_poses(problem.poses.size()), NoiseSums(problem.sensors()));
+  linear::for_each_poses(problem.poses.size(), [&](std::size_t part, std::size_t from, std::size_t to) {
+    PoseBlocks b;
+    for (std::size_t k = from; k < to; ++k) {
+      assemble(problem, model, state, k, Blocks::own, b);
+      PoseColumn column(problem.poses[k], b, parts[part], out.t.col(static_cast<Eigen::Index>(k)));
+      column.observe_readings();
+      column.observe_scalar(problem.common_field);
+      column.observe_attitude(state.nuisances[k]);
+    }
+  });
+  NoiseSums sums(problem.sensors());
+  for (const NoiseSums& part : parts) sums.add(part);
+  out.readings = sums.readings;
+  out.scalars = sums.scalars;
+  out.squares_nT2 = sums.squares_nT2;
+  out.freedom = sums.all_freedom;
   out.noise_ratio.resize(problem.sensors(), 3);
-  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
-    assemble(problem, model, state, k, Blocks::own, b);
-    const linear::Cholesky4 H(b.H);
-    const auto at = static_cast<Eigen::Index>(k);
-    observe_readings(problem.poses[k], b, H, at, sums, out);
-    observe_scalar(problem, problem.poses[k], b, H, at, out);
-    observe_attitude(problem.poses[k], state.nuisances[k], H, at, sums, out);
-  }
   // Each reading is an affine form of the field: four unknowns of the fixed block a channel, and its share of
   // effects.
   const double fitted = 4.0 + problem.coefficients() / static_cast<double>(problem.channels());
