@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/fit/joint/single_samples.h"
 #include "calib/fit/joint/unrolled_channels.h"
 #include "calib/linear/cholesky.h"
 #include "calib/linear/cholesky4.h"
@@ -52,6 +53,11 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
   double damping = 0, failed = -1;  // the latter from the same state; negative: none did
   best.reduced = reduce(problem, best.state, damping);
   double before = best.reduced.cost.total();
+  const bool recording = is_recording(problem) && !problem.has_angles;
+  if (recording) enough = std::max(enough, kRecordingConverged);
+  // The field of each sample, known from three readings alone, follows long steps on a curve from the first
+  // step on. Beside an effect with edges, as the width of a hysteresis, it may fall off the curve.
+  const bool on_curve = recording && problem.effects.empty();
   for (; best.iterations < kMaxIterations; ++best.iterations) {
     if (problem.stop.stop_requested()) return fail(ErrorCode::state, "the fit was stopped");
     if (best.iterations == kMaxIterations - kSlowIterations) before = best.reduced.cost.total();
@@ -68,10 +74,11 @@ Result<JointSolution> solve(const JointProblem& problem, JointState start, doubl
       }
       JointState next = best.state.moved(step);
       move_nuisances(problem, best.state, step, damping, next);
+      if (on_curve) refit_nuisances(problem, next);
       const double next_damping = softer(damping);
       const double limit = best.reduced.cost.total() * (1 + kRelativeDecrease);
       Reduced reduced = reduce(problem, next, next_damping);
-      if (reduced.cost.total() > limit) {
+      if (reduced.cost.total() > limit && !on_curve) {
         // A long step along what is weakly known: the poses' own unknowns follow it on a curve.
         refit_nuisances(problem, next);
         reduced = reduce(problem, next, next_damping);

@@ -14,6 +14,7 @@
 #include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/reference_turn.h"
+#include "calib/fit/joint/single_samples.h"
 #include "calib/fit/orientation.h"
 #include "calib/linear/qr.h"
 #include "calib/linear/symmetric_eigen.h"
@@ -245,7 +246,8 @@ JointState placed_joint_state(const JointProblem& problem, const PerSensor<senso
     }
     state.nuisances.push_back(x);
   }
-  refit_nuisances(problem, state);
+  // A sample of a recording says its field by itself.
+  if (problem.has_angles || !is_recording(problem)) refit_nuisances(problem, state);
   return state;
 }
 
