@@ -31,6 +31,9 @@ struct FitOptions {
   double table_sd_rad{to_rad(0.1)};         ///< of each table angle of each pose
   std::uint64_t seed{1};                    ///< of the draws that judge a fit (criticism); no method draws
   std::vector<effects::EffectPtr> effects;  ///< beside the twelve parameters a sensor; joint only
+  /// Share of the poses that the joint fit may leave out for contradicting the others. Zero, with every
+  /// method: each reading counts, whatever it is.
+  double most_left_out{1.0 / 3};
   /// Asked before every step of a solver: a fit that is stopped is refused within that time.
   std::stop_token stop{};
   RoundListener on_round{};  ///< joint only; may be empty

@@ -60,6 +60,9 @@ void add_fit(CLI::App& app, Session& session) {
   command->add_option("RUN", args->run, "*.mgtrun or a pose table in CSV")->required();
   command->add_option("-o,--output", args->output, "write the calibration here (CAL.json)");
   args->flags = add_fit_flags(command);
+  command->add_flag(
+      "--keep-all", args->flags->keep_all,
+      "leave no reading out, whatever the others say of it: to compare with plain least squares");
   command->footer(kFitHelp);
 }
 

@@ -218,6 +218,7 @@ Result<calib::fit::FitOptions> fit_options(const FitFlags& flags, const store::P
   if (flags.declination_deg) out.declination_rad = to_rad(*flags.declination_deg);
   if (flags.table_sd_deg) out.table_sd_rad = to_rad(*flags.table_sd_deg);
   if (flags.seed) out.seed = *flags.seed;
+  if (flags.keep_all) out.most_left_out = 0;
   return out;
 }
 

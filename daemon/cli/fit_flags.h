@@ -19,6 +19,7 @@ struct FitFlags {
   std::string method{"joint"};
   std::vector<std::string> further;  ///< runs that are judged together with the first
   std::vector<std::string> with;     ///< effects by name; "none" leaves the model that the run file keeps
+  bool keep_all{false};              ///< leave no reading out
   std::string without;               ///< numbers of poses that are left out this once
   std::optional<double> field_nT, field_sd_nT, inclination_deg, declination_deg, table_sd_deg;
   std::optional<std::uint64_t> seed;

@@ -126,6 +126,7 @@ class Outcome:
     samples: int
     before: list
     after: list
+    keeping_all: list  # after nine parameters, nothing left out
     independent: list
     unseen: list | None
     accepted: bool
@@ -149,11 +150,14 @@ def tried(programs, given, rows, folder, page, entire=False):
     run = recording.run(rows[1:], given.name)
     calibration = folder / f"{given.name}.json"
     fit = json.loads(mgt(programs, "fit", run, *recording.options, "-o", calibration, "--json"))
+    plain = folder / f"{given.name}_all.json"
+    mgt(programs, "fit", run, *recording.options, "--keep-all", "-o", plain, "--json")
     names, why = improved(programs, run, recording.options + ([] if page else ["--no-law"]), folder / "improved.json")
     return Outcome(
         samples=len(rows) - 1,
         before=rms_before(given, rows),
         after=recording.spreads(calibration, run),
+        keeping_all=recording.spreads(plain, run),
         independent=rms_independent(given, rows),
         unseen=rms_unseen(recording) if page else None,
         accepted=fit["accepted"],

@@ -18,13 +18,13 @@ def added(names):
 
 
 def recordings(outcomes):
-    print("""| set | what | samples | before | nine parameters | independent | others | unseen fifths | left out | `explain` | after `improve` |
-|---|---|---:|---:|---:|---:|---:|---:|---:|---|---|""")
+    print("""| set | what | samples | before | nine parameters | nothing left out | independent | others | unseen fifths | left out | `explain` | after `improve` |
+|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---|---|""")
     for given, o in outcomes:
         if o is None:
             continue
         unseen = "no calibration" if o.unseen is None else figures(o.unseen)
-        print(f"| {given.name} | {given.what} | {o.samples} | {figures(o.before)} | {figures(o.after)} | {figures(o.independent)} | "
+        print(f"| {given.name} | {given.what} | {o.samples} | {figures(o.before)} | {figures(o.after)} | {figures(o.keeping_all)} | {figures(o.independent)} | "
               f"{figures(given.known)} | {unseen} | {o.left_out} | {o.verdict} | {added(o.improved)} |")
 
 
@@ -95,7 +95,7 @@ Magnetometers, turned by hand, one sample a row, five single ones and a pair; th
 
     python3 tests/real/real_data.py build/bin --whole DIR > docs/real-data.md
 
-Every figure of the recordings is the rms of | |b| - F | over F: of the raw readings about their mean, after nine parameters, and on each fifth of the time with the calibration of the other four fifths. F is the known field, or where none is known the mean of |b|. A pair has two figures, s1 / s2. All samples count, those too that the fit leaves out. "Others" is the best figure known for the whole recording, by independent programs. The list that gives these figures has those of the two drone sets the other way round, 0.0113 and 0.042; the independent fit confirms that they belong as they stand in the table. "Independent" is plain least squares of | |b| - F | over all samples of the extract with the mean of |b| for F, by [nine_parameters.py](../tests/real/nine_parameters.py), which shares nothing with the program. On `hand_2` the two end apart: its samples do not determine nine parameters.
+Every figure of the recordings is the rms of | |b| - F | over F: of the raw readings about their mean, after nine parameters, and on each fifth of the time with the calibration of the other four fifths. F is the known field, or where none is known the mean of |b|. A pair has two figures, s1 / s2. All samples count, those too that the fit leaves out; "nothing left out" is the fit with `--keep-all`, which is what plain least squares compare with. "Others" is the best figure known for the whole recording, by independent programs. The list that gives these figures has those of the two drone sets the other way round, 0.0113 and 0.042; the independent fit confirms that they belong as they stand in the table. "Independent" is plain least squares of | |b| - F | over all samples of the extract with the mean of |b| for F, by [nine_parameters.py](../tests/real/nine_parameters.py), which shares nothing with the program. On `hand_2` the two end apart: its samples do not determine nine parameters.
 """)
     recordings(outcomes)
     print("""

@@ -160,6 +160,7 @@ JointOptions joint_options(const FitOptions& options) {
   out.inclination_rad = options.inclination_rad;
   out.declination_rad = options.declination_rad;
   out.table_sd_rad = options.table_sd_rad;
+  out.most_left_out = options.most_left_out;
   out.stop = options.stop;
   out.on_round = options.on_round;
   return out;

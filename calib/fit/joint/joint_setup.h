@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/calibration/calibration.h"
+#include "calib/fit/fit_options.h"
 #include "calib/fit/joint/joint_problem.h"
 #include "calib/fit/joint/joint_start.h"
 #include "calib/fit/readings.h"
@@ -28,9 +29,7 @@ struct JointOptions {
   /// Factor on the stated noise of readings and scalar reference, for a model that is known to be far off:
   /// its misfit would otherwise bend the parameters that are weakly determined.
   double noise_inflation{1};
-  /// Of the poses, that may be left out for contradicting the others; zero: everything counts, whatever it
-  /// is.
-  double most_left_out{1.0 / 3};
+  double most_left_out{FitOptions().most_left_out};
   std::stop_token stop{};    ///< of FitOptions
   RoundListener on_round{};  ///< of FitOptions
 };

@@ -156,7 +156,8 @@ void fill_uncertainty(FitReport& report, const Readings& readings, const FitOpti
 Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& options) {
   const auto all = readings_of(table, options);
   if (!all) return tl::unexpected(all.error());
-  const AgreeingReadings agreeing = agreeing_readings(*all);
+  const AgreeingReadings agreeing =
+      options.most_left_out > 0 ? agreeing_readings(*all) : AgreeingReadings{*all, {}};
   const Readings* const readings = &agreeing.kept;
   const auto fitted = two_step(*readings, options);
   if (!fitted) return tl::unexpected(fitted.error());

@@ -46,6 +46,23 @@ TEST(Outliers, AreASensorWhereAllOfItIsOff) {
   EXPECT_THAT(left_out(table), Contains(HasSubstr("pose 91, s1: ")));
 }
 
+TEST(Outliers, AreNoneWhereAllIsToBeKept) {
+  PoseTable table = clean_table();
+  table.poses[90].y_nT[0] += Eigen::Vector3d{2000, -1000, 500};
+  for (const Method method : {Method::joint, Method::two_step}) {
+    FitOptions options;
+    options.method = method;
+    const auto some = method_choice::fit(table, options);
+    ASSERT_TRUE(some);
+    EXPECT_FALSE(some->outliers.empty());
+    options.most_left_out = 0;
+    const auto all = method_choice::fit(table, options);
+    ASSERT_TRUE(all);
+    EXPECT_TRUE(all->outliers.empty());
+    EXPECT_GT((all->calibration.sensors[0].offset_nT - some->calibration.sensors[0].offset_nT).norm(), 1);
+  }
+}
+
 TEST(Outliers, AreAStretchWhereConsecutivePosesContradictInAllSensors) {
   PoseTable table = clean_table();
   for (std::size_t k = 40; k < 45; ++k) {
