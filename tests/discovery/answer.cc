@@ -57,10 +57,11 @@ struct Pair {
   PoseTable with, without;
 };
 
-Pair hidden_in_run(const AxisLaw& law, double d, int unseen, std::uint64_t seed) {
-  Pair out{.with = {}, .without = recorded_run({.noise_nT = kNoise_nT, .unseen = unseen}, seed)};
-  const Eigen::VectorXd unit = values_of(law, out.without);
-  out.with = out.without;
+Pair hidden_in_run(const UnknownLaw& law, Course course, double d, int unseen, std::uint64_t seed) {
+  std::mt19937_64 rng(seed);
+  RecordedRun run = recorded_run({.noise_nT = kNoise_nT, .unseen = unseen}, course, seed);
+  const Eigen::VectorXd unit = values_of(law.draw(rng, run.weather), run.table);
+  Pair out{.with = run.table, .without = std::move(run.table)};
   add(d / visible_length(out.without, unit) * unit, out.with);
   return out;
 }
@@ -95,19 +96,15 @@ Answer ask(const PoseTable& table, const UnknownLaw* law, int draws) {
   return out;
 }
 
-Answer ask_of_law(const UnknownLaw& law, double d, std::uint64_t seed, int draws) {
-  std::mt19937_64 rng(seed);
-  const Weather weather = weather_of(recorded_run({.unseen = kUnseen}, seed));
-  const Pair run = hidden_in_run(law.draw(rng, weather), d, kUnseen, seed);
+Answer ask_of_law(const UnknownLaw& law, Course course, double d, std::uint64_t seed, int draws) {
+  const Pair run = hidden_in_run(law, course, d, kUnseen, seed);
   Answer out = ask(run.with, &law, draws);
   if (out.found && !out.effects.empty()) out.gain = gain_of(run, out.effects);
   return out;
 }
 
 Answer ask_of_lawless(const UnknownLaw& law, double d, std::uint64_t seed, int draws) {
-  std::mt19937_64 rng(seed);
-  const Weather weather = weather_of(recorded_run({}, seed));
-  return ask(hidden_in_run(law.draw(rng, weather), d, 0, seed).with, nullptr, draws);
+  return ask(hidden_in_run(law, Course::swing, d, 0, seed).with, nullptr, draws);
 }
 
 }  // namespace mgtd::calib::testing

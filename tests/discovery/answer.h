@@ -38,7 +38,8 @@ struct Answer {
 [[nodiscard]] Answer ask(const PoseTable& table, const UnknownLaw* law, int draws);
 
 /// A law on s3.z of which the calibration leaves `d` standard deviations, in a run with unseen poses.
-[[nodiscard]] Answer ask_of_law(const UnknownLaw& law, double d, std::uint64_t seed, int draws);
+[[nodiscard]] Answer ask_of_law(const UnknownLaw& law, Course course, double d, std::uint64_t seed,
+                                int draws);
 /// The same without a true formula, and without a look at unseen poses.
 [[nodiscard]] Answer ask_of_lawless(const UnknownLaw& law, double d, std::uint64_t seed, int draws);
 

@@ -23,7 +23,7 @@ struct Kind {
 PoseTable clean_run(const Kind& kind, std::uint64_t seed) {
   HiddenRun run = kind.run;
   if (kind.walk_nT > 0) run.hidden = wandering_offsets({.step_nT = kind.walk_nT}, seed);
-  PoseTable table = recorded_run(run, seed);
+  PoseTable table = recorded_run(run, Course::swing, seed).table;
   for (Pose& pose : table.poses)
     for (Eigen::Vector3d& y_nT : pose.y_nT)
       if (kind.step_nT > 0) y_nT = kind.step_nT * (y_nT / kind.step_nT).array().round().matrix();

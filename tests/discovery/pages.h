@@ -17,6 +17,7 @@ struct Extent {
 
 [[nodiscard]] std::string clean_page(const Extent& extent);
 [[nodiscard]] std::string laws_page(const Extent& extent);
+[[nodiscard]] std::string rising_page(const Extent& extent);
 [[nodiscard]] std::string lawless_page(const Extent& extent);
 
 }  // namespace mgtd::calib::testing

@@ -41,7 +41,7 @@ AxisLaw by_pose(std::mt19937_64& rng, Step step) {
 
 /// A law without numbers of its own.
 auto plain(AxisLaw law) {
-  return [law = std::move(law)](std::mt19937_64&, const Weather&) { return law; };
+  return [law = std::move(law)](std::mt19937_64&, const WeatherPtr&) { return law; };
 }
 
 std::vector<UnknownLaw> make_laws() {
@@ -49,7 +49,7 @@ std::vector<UnknownLaw> make_laws() {
   using Field = Eigen::Vector3d;
   return {
       {"third harmonic of azimuth", R"(.*3\*azimuth_deg\).*)", "azimuth_deg",
-       [](Random& rng, const Weather&) -> AxisLaw {
+       [](Random& rng, const WeatherPtr&) -> AxisLaw {
          const double phase = uniform(rng, 0, 2 * std::numbers::pi);
          return [phase](const Pose& p, const Field&) { return std::sin(3 * *p.azimuth_rad + phase); };
        }},
@@ -58,31 +58,31 @@ std::vector<UnknownLaw> make_laws() {
       {"size of the reading", R"(abs\(z\))", "s3.z",
        plain([](const Pose&, const Field& v) { return std::abs(x_of(v)); })},
       {"saturation tanh(z/w)", R"(tanh\(z/.*)", "s3.z",
-       [](Random& rng, const Weather&) -> AxisLaw {
+       [](Random& rng, const WeatherPtr&) -> AxisLaw {
          const double w = uniform(rng, 0.05, 0.4);
          return [w](const Pose&, const Field& v) { return std::tanh(x_of(v) / w); };
        }},
       {"oscillation in time", R"(a\*sin\(2\*pi\*t_h.*)", "t_h",
-       [](Random& rng, const Weather&) -> AxisLaw {
+       [](Random& rng, const WeatherPtr&) -> AxisLaw {
          const double period_h = uniform(rng, 0.05, 0.5), phase = uniform(rng, 0, 2 * std::numbers::pi);
          return [=](const Pose& p, const Field&) {
            return std::sin(2 * std::numbers::pi * hours(p) / period_h + phase);
          };
        }},
       {"warm-up exp(-t/tau)", R"(exp\(-3600\*t_h/.*)", "t_h",
-       [](Random& rng, const Weather&) -> AxisLaw {
+       [](Random& rng, const WeatherPtr&) -> AxisLaw {
          const double tau_h = uniform(rng, 0.08, 0.4);
          return [tau_h](const Pose& p, const Field&) { return std::exp(-hours(p) / tau_h); };
        }},
       {"thermal lag", R"(lag\(T, .*)", "s3_T_degC",
-       [](Random& rng, const Weather& weather) -> AxisLaw {
+       [](Random& rng, const WeatherPtr& weather) -> AxisLaw {
          const double tau_s = uniform(rng, 200, 1500);
          return
-             [=](const Pose& p, const Field&) { return weather.lagging_T_degC(kLawSensor, *p.t_s, tau_s); };
+             [=](const Pose& p, const Field&) { return weather->lagging_T_degC(kLawSensor, *p.t_s, tau_s); };
        }},
       {"rate of the temperature", R"(dT/dt)", "s3_T_degC",
-       [](Random&, const Weather& weather) -> AxisLaw {
-         return [=](const Pose& p, const Field&) { return weather.rate_degC_per_h(kLawSensor, *p.t_s); };
+       [](Random&, const WeatherPtr& weather) -> AxisLaw {
+         return [=](const Pose& p, const Field&) { return weather->rate_degC_per_h(kLawSensor, *p.t_s); };
        }},
       {"temperature times time", R"(.*\*.*)", "t_h, s3_T_degC",
        plain([](const Pose& p, const Field&) { return (T_of(p) - 21) * hours(p); })},
@@ -91,7 +91,7 @@ std::vector<UnknownLaw> make_laws() {
       {"current times reading", R"(z\*\(?motor_A.*)", "s3.z, motor_A",
        plain([](const Pose& p, const Field& v) { return p.covariates.at("motor_A") * x_of(v); })},
       {"knee in the temperature", R"(max\(0, .*T.*\))", "s3_T_degC",
-       [](Random& rng, const Weather&) -> AxisLaw {
+       [](Random& rng, const WeatherPtr&) -> AxisLaw {
          const double knee = uniform(rng, 19.5, 22.5);
          return [knee](const Pose& p, const Field&) { return std::max(0.0, T_of(p) - knee); };
        }},
@@ -106,7 +106,7 @@ std::vector<UnknownLaw> make_further_laws() {
   using Field = Eigen::Vector3d;
   return {
       {"cube of the temperature", R"(.*T.*\^3)", "s3_T_degC",
-       [](std::mt19937_64& rng, const Weather&) -> AxisLaw {
+       [](std::mt19937_64& rng, const WeatherPtr&) -> AxisLaw {
          const double centre = uniform(rng, 20, 22);
          return [centre](const Pose& p, const Field&) { return std::pow(T_of(p) - centre, 3); };
        }},
@@ -119,15 +119,15 @@ std::vector<UnknownLaw> make_further_laws() {
 
 std::vector<UnknownLaw> make_lawless() {
   std::vector<UnknownLaw> out;
-  out.push_back({"offset that walks", "", "", [](std::mt19937_64& rng, const Weather&) {
+  out.push_back({"offset that walks", "", "", [](std::mt19937_64& rng, const WeatherPtr&) {
                    return by_pose(rng, [](std::mt19937_64& r, double now) {
                      return now + std::normal_distribution<double>()(r);
                    });
                  }});
-  out.push_back({"unrecorded load, on or off", "", "", [](std::mt19937_64& rng, const Weather&) {
+  out.push_back({"unrecorded load, on or off", "", "", [](std::mt19937_64& rng, const WeatherPtr&) {
                    return by_pose(rng, [](std::mt19937_64& r, double) { return r() % 2 == 0 ? 1.0 : 0.0; });
                  }});
-  out.push_back({"24 times a turn", "", "", [](std::mt19937_64& rng, const Weather&) -> AxisLaw {
+  out.push_back({"24 times a turn", "", "", [](std::mt19937_64& rng, const WeatherPtr&) -> AxisLaw {
                    const double phase = uniform(rng, 0, 2 * std::numbers::pi);
                    return [phase](const Pose& p, const Eigen::Vector3d&) {
                      return std::sin(24 * *p.azimuth_rad + phase);
@@ -139,29 +139,7 @@ std::vector<UnknownLaw> make_lawless() {
   return out;
 }
 
-constexpr double kTurn_rad = 5, kAhead_rad = 0.3, kSwing_degC = 3, kMean_degC = 21;
-
-double phase_rad(const Weather& weather, std::size_t sensor, double t_s) {
-  return kTurn_rad * t_s / weather.length_s + kAhead_rad * static_cast<double>(sensor);
-}
-
 }  // namespace
-
-double Weather::T_degC(std::size_t sensor, double t_s) const {
-  return kMean_degC + kSwing_degC * std::sin(phase_rad(*this, sensor, t_s));
-}
-
-double Weather::rate_degC_per_h(std::size_t sensor, double t_s) const {
-  return kSwing_degC * std::cos(phase_rad(*this, sensor, t_s)) * kTurn_rad / length_s * 3600;
-}
-
-double Weather::lagging_T_degC(std::size_t sensor, double t_s, double tau_s) const {
-  const double late_rad = std::atan(kTurn_rad / length_s * tau_s),
-               amplitude = kSwing_degC * std::cos(late_rad);
-  const auto settled = [&](double t) { return amplitude * std::sin(phase_rad(*this, sensor, t) - late_rad); };
-  const double before = T_degC(sensor, 0) - kMean_degC - settled(0);
-  return kMean_degC + settled(t_s) + before * std::exp(-t_s / tau_s);
-}
 
 const std::vector<UnknownLaw>& unknown_laws() {
   static const std::vector<UnknownLaw> all = make_laws();
@@ -176,23 +154,21 @@ const std::vector<UnknownLaw>& lawless() {
   return all;
 }
 
-Weather weather_of(const PoseTable& table) { return {.length_s = *table.poses.back().t_s}; }
-
-PoseTable recorded_run(const HiddenRun& run, std::uint64_t seed) {
+RecordedRun recorded_run(const HiddenRun& run, Course course, std::uint64_t seed) {
   PoseTable table = hidden_run(run, seed);
   HiddenRun quiet = run;
   quiet.noise_nT = 0;
   const PoseTable noiseless = hidden_run(quiet, seed);
-  const Weather weather = weather_of(table);
+  WeatherPtr temperatures = weather(course, *table.poses.back().t_s, seed);
   for (std::size_t k = 0; k < table.poses.size(); ++k) {
     Pose& pose = table.poses[k];
     if (pose.set == "check") pose.y_nT = noiseless.poses[k].y_nT;
     for (std::size_t i = 0; i < 4; ++i)
-      pose.T_degC[i] = weather.T_degC(i, *pose.t_s) + 0.01 * number_of(pose.number, seed + 2 + i);
+      pose.T_degC[i] = temperatures->T_degC(i, *pose.t_s) + 0.01 * number_of(pose.number, seed + 2 + i);
     pose.covariates["motor_A"] = motor_A(pose, seed);
     pose.covariates["battery_V"] = battery_V(pose, seed);
   }
-  return table;
+  return {std::move(table), std::move(temperatures)};
 }
 
 Eigen::VectorXd values_of(const AxisLaw& law, const PoseTable& table) {
