@@ -9,41 +9,20 @@
 #include <cstdlib>
 
 #include "calib/calibration/apply.h"
-#include "calib/criticism/search/explain.h"
 #include "calib/effects/library/library.h"
-#include "calib/fit/joint/joint_fit.h"
-#include "calib/fit/joint/sample_correlation.h"
 #include "calib/report/fit_report_text.h"
-#include "calib/report/verdict_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
 
 namespace mgtd::calib {
 namespace {
 
 using testing::band;
+using testing::explained;
 using testing::fitted;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Places;
 using testing::squared_error;
-
-criticism::search::ExplainReport explained(const PoseTable& table, const Places& places) {
-  const criticism::search::ExplainOptions options{
-      .fit = testing::options_of(places), .rounds = 3, .candidate_effects = {}};
-  auto report = criticism::search::explain(table, options);
-  if (!report) throw std::runtime_error(report.error().text());
-  return *std::move(report);
-}
-
-/// Errors of the nine parameters of one sensor that need no frame, over their covariance.
-double nine_squared_errors(const calibration::Calibration& c, const rig::SensorTruth& truth) {
-  const sensor::SensorModel& s = c.sensors[0];
-  Eigen::Matrix<double, 9, 1> off;
-  off << s.theta_rad - to_rad(truth.theta_deg), s.phi_rad - to_rad(truth.phi_deg),
-      s.psi_rad - to_rad(truth.psi_deg), s.scale - truth.scale, s.offset_nT - truth.offset_nT;
-  const Eigen::Matrix<double, 9, 9> C = c.covariance.topLeftCorner<9, 9>();
-  return off.dot(C.ldlt().solve(off));
-}
 
 struct Honest {
   const char* name;
@@ -196,207 +175,6 @@ TEST(ArraysOfAnySize, OneSensorLosesNoMoreThanTheGrossReading) {
     ASSERT_EQ(report.outliers.size(), 1U) << gross.pose << ", " << gross.shift_nT;
     EXPECT_EQ(report.outliers.front().where, fmt::format("s1.{}", "xyz"[gross.axis]));
     EXPECT_LT(report.residual_nT, 2 * report.noise_nT);
-  }
-}
-
-PoseTable in_a_cage(const std::string& more, std::uint64_t seed) {
-  const auto scenario = testing::scenario_of(
-      testing::one_sensor(), seed,
-      "[reference]\nvector = true\nsd_nT = 0.2\nmisalignment_deg = [1, -2, 3]\n[cage]\nfields = \"random\"\n"
-      "max_nT = 60000\nposes = 120\n" +
-          more);
-  return rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, seed), seed);
-}
-
-/// A scale factor that drifts by more than occurs is not named, and the temperature, which drifts too, not in
-/// its place: in these runs its evidence is that of the drift.
-TEST(KnownVector, WhatLooksLikeSomethingAbsurdIsNotNamedInItsPlace) {
-  struct Run {
-    std::uint64_t seed;
-    const char* axis;
-    double ppm_per_h;
-  };
-  for (const auto& [seed, axis, ppm_per_h] :
-       {Run{102, "s1.z", 280}, Run{109, "s1.x", -280}, Run{114, "s1.z", 280}}) {
-    const auto scenario = testing::scenario_of(
-        testing::one_sensor(), seed,
-        fmt::format(
-            "[temperature]\nstart_degC = 17.5\nramp_degC_per_h = 2\npulse_degC = 7\npulse_at_s = 400\n"
-            "pulse_tau_s = 350\n[reference]\nvector = true\nscalar = false\nsd_nT = 0.2\n"
-            "misalignment_deg = [1, -2, 3]\n[cage]\nfields = \"random\"\nmax_nT = 60000\nposes = 120\n"
-            "[[effect]]\nname = \"axis.gain.drift\"\nwhere = \"{}\"\nppm_per_h = {}\n",
-            axis, ppm_per_h));
-    const auto report = explained(
-        rig::simulated_table(scenario, rig::cage_fields(*scenario.cage, seed), seed), testing::one_sensor());
-    EXPECT_TRUE(report.rounds.empty()) << seed << ": " << report.rounds.front().added.effect;
-    EXPECT_THAT(report.notes, ::testing::Not(::testing::IsEmpty())) << seed;
-  }
-}
-
-TEST(KnownVector, TheFieldOfACageGivesEveryParameterAndTheMisalignment) {
-  double sum = 0;
-  constexpr int kRuns = 40;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const auto scenario = testing::scenario_of(testing::one_sensor(), seed);
-    const fit::FitReport report = fitted(in_a_cage("", seed), testing::one_sensor());
-    sum += nine_squared_errors(report.calibration, scenario.truth[0]) / kRuns;
-    EXPECT_THAT(report.calibration.gauge, HasSubstr("vector reference"));
-    EXPECT_LT(std::sqrt(report.calibration.covariance(sensor::alpha, sensor::alpha)), to_rad(0.001));
-  }
-  EXPECT_NEAR(sum, 9, band(9, kRuns));
-}
-
-TEST(KnownVector, ALawIsNamedInACage) {
-  EXPECT_EQ(explained(in_a_cage("", 3), testing::one_sensor()).left, criticism::search::Finding::pass);
-  const auto found =
-      explained(in_a_cage("[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.z\"\nnT_at_F0 = 5\n", 3),
-                testing::one_sensor());
-  ASSERT_FALSE(found.rounds.empty());
-  EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
-}
-
-TEST(KnownVector, AReferenceOfUnknownScatterIsNotTakenForNoiseOfTheSensors) {
-  PoseTable table = in_a_cage("", 3);
-  for (Pose& pose : table.poses) pose.ref_sd_nT.reset();
-  EXPECT_THAT(report::sentence(explained(table, testing::one_sensor())), HasSubstr("give ref_sd_nT = 0.2"));
-}
-
-/// One field strength does not tell the square of the own axis from those of the other two: together they are
-/// constant. Fields from zero to full scale do.
-TEST(KnownVector, SquaresOfTheOwnAndOfTheOtherAxesAreToldApartInACage) {
-  for (const auto& [law, size] : {std::pair{"axis.quadratic", "5"}, {"axis.transverse", "[5, 0]"}}) {
-    const auto found = explained(
-        in_a_cage(fmt::format("[[effect]]\nname = \"{}\"\nwhere = \"s1.y\"\nnT_at_F0 = {}\n", law, size), 3),
-        testing::one_sensor());
-    EXPECT_EQ(found.finding, criticism::search::Finding::explained) << law;
-    ASSERT_EQ(found.rounds.size(), 1U) << law;
-    EXPECT_EQ(found.rounds.front().added.effect, law);
-    EXPECT_TRUE(found.rounds.front().possible.empty()) << law;
-    EXPECT_EQ(found.left, criticism::search::Finding::pass) << law;
-  }
-}
-
-/// As of a magnetometer on a chip.
-constexpr const char* kLargeNoise = "[sensors]\nnoise_nT = 20\n";
-
-TEST(Recording, CorrelatedSamplesCountForLess) {
-  constexpr double kRho = 0.9;
-  double sum = 0;
-  constexpr int kRuns = 12;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const PoseTable table = testing::recorded("hand", kRho, seed);
-    const fit::FitReport report = fitted(table, testing::one_sensor());
-    sum +=
-        nine_squared_errors(report.calibration, testing::scenario_of(testing::one_sensor(), seed).truth[0]) /
-        kRuns;
-  }
-  // A hand turns faster than white noise would need: the correlation is a bound, three times at the most.
-  EXPECT_LT(sum, 9 + band(9, kRuns));
-  EXPECT_GT(sum, 2);
-}
-
-/// Two thirds of the samples stand still and repeat two attitudes: they are no two thirds of what is known.
-TEST(Recording, LongRestsMakeNothingSurer) {
-  double sum = 0;
-  constexpr int kRuns = 12;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    const auto scenario = testing::scenario_of(
-        testing::one_sensor(), seed,
-        "[recording]\nmotion = \"hand\"\nrate_hz = 20\nduration_s = 150\nrest_s = 50\nar = 0.9\n");
-    const fit::FitReport report =
-        fitted(rig::pose_table_of(rig::simulated_recording(scenario)), testing::one_sensor());
-    sum += nine_squared_errors(report.calibration, scenario.truth[0]) / kRuns;
-  }
-  EXPECT_LT(sum, 9 + band(9, kRuns));
-  EXPECT_GT(sum, 2);
-}
-
-/// Its fit starts from a share of the samples, among which are gross ones.
-TEST(Recording, ALongOneIsFittedWithAllItsSamples) {
-  constexpr std::size_t kSamples = 12'000, kGrossEvery = 97;
-  const auto scenario = testing::scenario_of(
-      testing::one_sensor(), 5, "[recording]\nmotion = \"hand\"\nrate_hz = 80\nduration_s = 150\nar = 0\n");
-  PoseTable table = rig::pose_table_of(rig::simulated_recording(scenario));
-  ASSERT_GE(table.poses.size(), kSamples);
-  std::size_t gross = 0;
-  for (std::size_t k = 0; k < table.poses.size(); k += kGrossEvery, ++gross)
-    table.poses[k].y_nT[0][static_cast<int>(gross % 3)] += 500;
-  fit::joint::JointOptions options;
-  options.geometry = testing::geometry_of(testing::one_sensor());
-  const auto fit = fit::joint::fit_joint(table, options);
-  ASSERT_TRUE(fit) << fit.error().text();
-  EXPECT_EQ(fit->problem.poses.size(), table.poses.size());
-  // Across the field 500 nT change its size by two or three only.
-  EXPECT_GT(fit->outliers.size(), gross * 9 / 10);
-  for (const auto& node : fit->outliers) EXPECT_EQ(node.place % kGrossEvery, 0U);
-  const auto again = fit::joint::fit_joint(table, options, fit->state);
-  ASSERT_TRUE(again) << again.error().text();
-  const Eigen::VectorXd sd = fit->covariance.diagonal().head<sensor::kSensorParameters>().cwiseSqrt();
-  const Eigen::VectorXd moved = again->state.sensors[0].parameters() - fit->state.sensors[0].parameters();
-  EXPECT_LT((moved.array() / sd.array()).head<9>().abs().maxCoeff(), 0.05);
-  EXPECT_LT(nine_squared_errors(fitted(table, testing::one_sensor()).calibration, scenario.truth[0]), 28);
-}
-
-TEST(Recording, CleanOnesPass) {
-  for (const double ar : {0.0, 0.9})
-    EXPECT_EQ(explained(testing::recorded("hand", ar, 2), testing::one_sensor()).left,
-              criticism::search::Finding::pass)
-        << ar;
-}
-
-/// Readings that large noise moves are bent about the residual: no law hides in that.
-TEST(Recording, CleanOnesOfLargeNoisePass) {
-  for (const char* motion : {"hand", "flight"})
-    EXPECT_EQ(explained(testing::recorded(motion, 0, 2, kLargeNoise), testing::one_sensor()).left,
-              criticism::search::Finding::pass)
-        << motion;
-}
-
-TEST(Recording, ALawInLargeNoiseIsNamed) {
-  const auto found = explained(
-      testing::recorded(
-          "hand", 0, 2,
-          std::string(kLargeNoise) + "[[effect]]\nname = \"axis.cubic\"\nwhere = \"s1.x\"\nnT_at_F0 = 100\n"),
-      testing::one_sensor());
-  ASSERT_EQ(found.rounds.size(), 1U);
-  EXPECT_EQ(found.rounds.front().added.effect, "axis.cubic");
-  EXPECT_EQ(found.left, criticism::search::Finding::pass);
-}
-
-/// Beside a disturbance of no library, steps that follow it are not named.
-TEST(Recording, LawsThatOnlyDescribeAreNotNamed) {
-  const auto found =
-      explained(testing::recorded("hand", 0, 2,
-                                  "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT "
-                                  "= [30, 20, 10]\nperiod_s = 60\n"),
-                testing::one_sensor());
-  EXPECT_TRUE(found.rounds.empty());
-  EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
-}
-
-/// Steps enough leave nothing; what they followed is no less unknown.
-TEST(Recording, LawsThatDescribeEverythingDoNotMakeItPass) {
-  const auto scenario = testing::scenario_of(
-      testing::one_sensor(), 2,
-      "[sensors]\nnoise_nT = 0.2\n[recording]\nmotion = \"flight\"\nrate_hz = 10\nduration_s = 120\n"
-      "scalar = false\n[[effect]]\nname = \"hidden.site-oscillation\"\nnT = [10, -20, 15]\nperiod_s = 300\n");
-  const auto found = explained(rig::pose_table_of(rig::simulated_recording(scenario)), testing::one_sensor());
-  EXPECT_TRUE(found.rounds.empty());
-  EXPECT_EQ(found.finding, criticism::search::Finding::unknown);
-}
-
-TEST(Recording, TheReportSaysThatNeighboursAreAlike) {
-  const std::string text = report::to_text(fitted(testing::recorded("hand", 0.9, 2), testing::one_sensor()));
-  EXPECT_THAT(text, HasSubstr("count as one in the uncertainties"));
-  EXPECT_THAT(text, HasSubstr("no table angles: alpha = beta = gamma = 0, relative to the mounting;"));
-  EXPECT_THAT(text, Not(HasSubstr("nan")));
-}
-
-TEST(Recording, WhatDoesNotExciteIsRefused) {
-  for (const char* motion : {"level", "one-axis"}) {
-    const auto report =
-        fit::method_choice::fit(testing::recorded(motion, 0, 2), testing::options_of(testing::one_sensor()));
-    EXPECT_TRUE(!report || !report->calibration.accepted_by_checks) << motion;
   }
 }
 
