@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/cli/html.h"
+#include "calib/report/html.h"
 
 #include "calib/report/figures/escaped.h"
 #include "calib/report/figures/figure.h"
 
-namespace mgtd::daemon::cli {
+namespace mgtd::calib::report {
 namespace {
 
 constexpr const char* kPageStyle = R"(
@@ -37,16 +37,16 @@ table{font-size:10.5px}td,th{padding:2px 5px}p{orphans:3;widows:3}}
 
 }  // namespace
 
-std::string html_style() { return kPageStyle + calib::report::figures::figure_style(); }
+std::string html_style() { return kPageStyle + figures::figure_style(); }
 
 std::string html_table(const std::vector<std::string>& head, const Rows& rows, bool words,
                        const std::set<std::size_t>& failed) {
   if (rows.empty()) return "";
-  return calib::report::figures::table_html({.head = head, .rows = rows, .note = {}}, words, failed);
+  return figures::table_html({.head = head, .rows = rows, .note = {}}, words, failed);
 }
 
 std::string html_good(const std::string& text) {
-  return "<p class=\"good\"><b>What good looks like:</b> " + calib::report::figures::escaped(text) + "</p>";
+  return "<p class=\"good\"><b>What good looks like:</b> " + figures::escaped(text) + "</p>";
 }
 
-}  // namespace mgtd::daemon::cli
+}  // namespace mgtd::calib::report

@@ -6,7 +6,7 @@
 
 /// These functions write the tables and the style of the report's page. Figures bring a style of their own
 /// (calib/report/figures).
-namespace mgtd::daemon::cli {
+namespace mgtd::calib::report {
 
 /// Light, dark as the screen asks for it, and printed on A4.
 [[nodiscard]] std::string html_style();
@@ -19,4 +19,4 @@ using Rows = std::vector<std::vector<std::string>>;
 /// The caption that says what to expect of a section.
 [[nodiscard]] std::string html_good(const std::string& text);
 
-}  // namespace mgtd::daemon::cli
+}  // namespace mgtd::calib::report

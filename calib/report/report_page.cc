@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/cli/report_page.h"
+#include "calib/report/report_page.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,18 +16,18 @@
 #include "calib/report/figures/escaped.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/fit_report_text.h"
+#include "calib/report/html.h"
 #include "calib/report/noise_text.h"
 #include "calib/report/outlier_text.h"
 #include "calib/report/residual_words.h"
 #include "calib/report/shown_number.h"
 #include "calib/report/verdict_text.h"
 #include "calib/stats/probability.h"
-#include "daemon/cli/html.h"
 #include "proto/units.h"
 
-namespace mgtd::daemon::cli {
+namespace mgtd::calib::report {
 
-using calib::report::figures::escaped;
+using figures::escaped;
 
 namespace {
 
@@ -45,9 +45,9 @@ std::string duration(const PoseTable& table) {
   return a && b ? fmt::format("{:.0f} minutes", (*b - *a) / 60) : "not recorded";
 }
 
-std::vector<std::string> error_row(const std::string& name, const calib::fit::ErrorSummary& e, bool tensor) {
+std::vector<std::string> error_cells(const std::string& name, const fit::ErrorSummary& e, bool tensor) {
   std::vector<std::string> out{name};
-  const auto add = [&](double x) { out.push_back(calib::report::shown_number(x, 0, 3)); };
+  const auto add = [&](double x) { out.push_back(shown_number(x, 0, 3)); };
   for (const double x : e.total_field_rmse_nT) add(x);
   if (!tensor) return out;
   for (const double x : components(e.tensor_rmse_nT_per_m)) add(x);
@@ -65,18 +65,15 @@ std::string site_text(const ReportContent& c) {
   return out;
 }
 
-std::string banner_class(calib::criticism::search::Finding finding) {
-  if (finding == calib::criticism::search::Finding::pass) return "banner pass";
-  return finding == calib::criticism::search::Finding::bad_data ? "banner bad" : "banner";
+std::string banner_class(criticism::search::Finding finding) {
+  if (finding == criticism::search::Finding::pass) return "banner pass";
+  return finding == criticism::search::Finding::bad_data ? "banner bad" : "banner";
 }
 
 /// Poses that an operator left out, which no figure of the page shows.
-std::string masked_poses(const std::vector<store::MaskedPose>& masked) {
-  if (masked.empty()) return "";
-  Rows rows;
-  for (const store::MaskedPose& m : masked)
-    rows.push_back({fmt::format("{}", m.number), m.because, fmt::format("{:.19}Z", format_utc(m.at)), m.who});
-  return "<h3>Left out by the operator</h3>" + html_table({"pose", "because", "when", "who"}, rows, true);
+std::string masked_poses(const figures::DataTable& masked) {
+  if (masked.rows.empty()) return "";
+  return "<h3>Left out by the operator</h3>" + figures::table_html(masked, true);
 }
 
 }  // namespace
@@ -84,27 +81,21 @@ std::string masked_poses(const std::vector<store::MaskedPose>& masked) {
 std::string measured_section(const ReportContent& c) {
   std::map<std::string, int> sets;
   std::set<std::string> columns;
-  for (const Pose& pose : c.source.table.poses) {
+  for (const Pose& pose : c.table.poses) {
     ++sets[pose.set];
     for (const auto& [name, value] : pose.covariates) columns.insert(name);
   }
   std::vector<std::string> counted;
   for (const auto& [name, count] : sets) counted.push_back(fmt::format("{} {}", count, name));
-  const std::size_t masked = c.source.masked.size();
+  const std::size_t masked = c.file.masked.rows.size();
   Rows rows{
-      {"poses", fmt::format("{} ({}){}", c.source.table.poses.size(), fmt::join(counted, ", "),
+      {"poses", fmt::format("{} ({}){}", c.table.poses.size(), fmt::join(counted, ", "),
                             masked == 0 ? "" : fmt::format("; {} more masked by the operator", masked))},
-      {"time", duration(c.source.table)},
-      {"temperature of the heads", temperatures(c.source.table)},
+      {"time", duration(c.table)},
+      {"temperature of the heads", temperatures(c.table)},
       {"extra columns", columns.empty() ? "none" : fmt::format("{}", fmt::join(columns, ", "))},
       {"data", c.fit.calibration.data_hash}};
-  if (c.source.header) {
-    const store::RunHeader& h = *c.source.header;
-    const std::string started = h.started_utc.ns == 0
-                                    ? "start not recorded"
-                                    : fmt::format("started {:.19}Z", format_utc(h.started_utc));
-    rows.insert(rows.begin(), {"run", fmt::format("{} on rig {}, {}", h.run_id, h.rig, started)});
-  }
+  if (!c.file.run.empty()) rows.insert(rows.begin(), {"run", c.file.run});
   rows.push_back({"operator", c.operator_name.empty() ? "not stated (--operator)" : c.operator_name});
   rows.push_back({"site", c.site.empty() ? site_text(c) : c.site + "; " + site_text(c)});
   std::string out = "<h2>What was measured</h2>" + html_table({"", ""}, rows, true);
@@ -117,8 +108,8 @@ std::string measured_section(const ReportContent& c) {
              ? "<p class=\"quiet\">The file names no instruments.</p>"
              : "<h3>Instruments</h3>" +
                    html_table({"place", "as it names itself", "serial number"}, instruments, true);
-  out += masked_poses(c.source.masked) + figures_html(c.measured);
-  const std::vector<std::string> left_out = calib::report::outlier_texts(c.comparison.outliers);
+  out += masked_poses(c.file.masked) + figures_html(c.drawn.measured);
+  const std::vector<std::string> left_out = outlier_texts(c.comparison.outliers);
   if (left_out.empty()) return out + "<p>No reading was left out.</p>";
   out += "<h3>Left out by the fit</h3><ul>";
   for (const std::string& text : left_out) out += "<li>" + escaped(text) + "</li>";
@@ -127,12 +118,11 @@ std::string measured_section(const ReportContent& c) {
 
 std::string verdict_section(const ReportContent& c) {
   const std::string word(to_string(c.explained.finding));
-  std::string text = calib::report::sentence(c.explained);
+  std::string text = sentence(c.explained);
   std::string out = fmt::format("<div class=\"{}\"><strong>{}</strong>{}</div>",
                                 banner_class(c.explained.finding), word, escaped(text));
-  for (const calib::criticism::search::Choice& choice : c.doubts)
-    out +=
-        "<p><strong>Open since it was chosen:</strong> " + escaped(calib::report::to_text(choice)) + ".</p>";
+  for (const criticism::search::Choice& choice : c.doubts)
+    out += "<p><strong>Open since it was chosen:</strong> " + escaped(to_text(choice)) + ".</p>";
   Rows rows;
   std::set<std::size_t> failed;
   for (const Check& check : c.fit.calibration.checks) {
@@ -150,7 +140,7 @@ std::string verdict_section(const ReportContent& c) {
         "{:.3g} times the noise: look at what the model leaves and what could be missing.</p>",
         c.fit.residual_nT / c.fit.noise_nT);
   }
-  for (const std::string& reason : calib::report::fit_reasons(c.fit))
+  for (const std::string& reason : fit_reasons(c.fit))
     out += "<p class=\"quiet\">" + escaped(reason) + "</p>";
   return out + html_good(
                    "every check passed, and the residual is near the noise. A calibration that fails a check "
@@ -158,10 +148,10 @@ std::string verdict_section(const ReportContent& c) {
 }
 
 std::string errors_section(const ReportContent& c) {
-  const bool tensor = calib::report::tells_tensor(c.fit);
+  const bool tensor = tells_tensor(c.fit);
   Rows rows;
-  const auto add = [&](const char* name, const calib::fit::ErrorSummary& e) {
-    rows.push_back(error_row(name, e, tensor));
+  const auto add = [&](const char* name, const fit::ErrorSummary& e) {
+    rows.push_back(error_cells(name, e, tensor));
   };
   add("before", c.fit.before);
   if (c.fit.simplified) add("simplified", *c.fit.simplified);
@@ -174,7 +164,7 @@ std::string errors_section(const ReportContent& c) {
   if (tensor) head.insert(head.end(), {"xx", "yy", "zz", "xy", "xz", "yz"});
   return std::string(
              "<h2>Errors before and after</h2><p class=\"quiet\">Root mean squares over the poses, nT") +
-         (tensor ? " and nT/m; " : "; ") + escaped(calib::report::rows_text(c.fit)) + ".</p>" +
+         (tensor ? " and nT/m; " : "; ") + escaped(rows_text(c.fit)) + ".</p>" +
          html_table(head, rows, false) +
          html_good(fmt::format(
              "the last rows agree with each other (nothing was overfitted) and lie near the noise of a "
@@ -183,22 +173,21 @@ std::string errors_section(const ReportContent& c) {
 }
 
 std::string noise_section(const ReportContent& c) {
-  const calib::criticism::tests::Comparison& m = c.comparison;
+  const criticism::tests::Comparison& m = c.comparison;
   std::string out = fmt::format(
       "<h2>Noise</h2><p>Noise of a pose mean {:.3g} nT, {}. Residual {:.3g} nT ({}). {}</p>", m.noise_nT,
-      calib::report::noise_source(m.noise.known), m.residual_nT, calib::report::kResidualIs,
-      escaped(calib::report::as_sentence(calib::report::noise_of_tests(m.noise))));
+      noise_source(m.noise.known), m.residual_nT, kResidualIs, escaped(as_sentence(noise_of_tests(m.noise))));
   Rows rows{{"chi-square", fmt::format("{:.4g} with {:.0f} degrees of freedom{}", m.chi2, m.dof,
-                                       m.log10_p ? "; " + calib::stats::p_phrase(*m.log10_p) : "")},
+                                       m.log10_p ? "; " + stats::p_phrase(*m.log10_p) : "")},
             {"correlation from pose to pose", fmt::format("{:.2f}", m.noise.rho)}};
   if (m.noise.revisits)
     rows.push_back(
         {"revisits", fmt::format("{} pairs of one attitude scatter {:.2f} times that noise; lack of fit {}",
                                  m.noise.revisits->pairs, std::sqrt(m.noise.revisits->ratio),
-                                 calib::stats::p_phrase(m.noise.revisits->log10_p))});
+                                 stats::p_phrase(m.noise.revisits->log10_p))});
   if (m.table_sd_deg > 0)
     rows.push_back({"table angles", fmt::format("good to {:.3g}°{} each, estimated", m.table_sd_deg,
-                                                calib::fit::joint::or_more(to_rad(m.table_sd_deg)))});
+                                                fit::joint::or_more(to_rad(m.table_sd_deg)))});
   out += html_table({"", ""}, rows, true);
   Rows axes;
   for (Eigen::Index s = 0; s < m.axis_noise_nT.rows(); ++s) {
@@ -221,8 +210,8 @@ std::string residual_section(const ReportContent& c) {
                                    : "<p>Left of each figure the sensors' parameters alone, right with the "
                                      "effects that the search ended with; both on "
                                      "equal axes.</p>";
-  out += figures_html(c.panels);
-  for (const std::string& line : calib::report::alike_text(c.comparison))
+  out += figures_html(c.drawn.panels);
+  for (const std::string& line : alike_text(c.comparison))
     out += "<p class=\"quiet\">" + escaped(line) + ".</p>";
   return out + html_good(
                    "points that scatter about zero without a shape. What follows something on the scalar "
@@ -248,4 +237,4 @@ std::string report_page(const ReportContent& c) {
                    escaped(c.command));
 }
 
-}  // namespace mgtd::daemon::cli
+}  // namespace mgtd::calib::report

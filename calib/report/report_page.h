@@ -2,14 +2,14 @@
 #pragma once
 #include <string>
 
-#include "daemon/cli/report_content.h"
+#include "calib/report/report_content.h"
 
 /// The report of a run is one page that needs nothing else: no script, no font, no network.
-namespace mgtd::daemon::cli {
+namespace mgtd::calib::report {
 
 [[nodiscard]] std::string report_page(const ReportContent& content);
 
-[[nodiscard]] std::string figures_html(const std::vector<calib::report::figures::Figure>& figures);
+[[nodiscard]] std::string figures_html(const std::vector<figures::Figure>& figures);
 
 /// Parts of it, in order.
 [[nodiscard]] std::string verdict_section(const ReportContent& content);
@@ -27,4 +27,4 @@ namespace mgtd::daemon::cli {
 [[nodiscard]] std::string judgements_section(const ReportContent& content);
 [[nodiscard]] std::string history_section(const ReportContent& content);
 
-}  // namespace mgtd::daemon::cli
+}  // namespace mgtd::calib::report

@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "calib/report/report_page.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/fit_flags.h"
 #include "daemon/cli/output_file.h"
-#include "daemon/cli/report_page.h"
+#include "daemon/cli/report_wishes.h"
 #include "daemon/cli/work_progress.h"
 
 namespace mgtd::daemon::cli {
@@ -38,7 +39,7 @@ int run_report(const Session& session, const ReportArguments& args) {
     return report_content(args.wishes, *args.flags, shown.rounds());
   }();
   if (!content) return report(session, content.error());
-  const std::string page = report_page(*content);
+  const std::string page = calib::report::report_page(*content);
   if (auto written = output->write(page, "report"); !written) return report(session, written.error());
   if (session.json)
     print_json({{"schema", "mgt.report/1"},

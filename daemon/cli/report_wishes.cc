@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/cli/report_content.h"
+#include "daemon/cli/report_wishes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,6 +25,7 @@
 #include "daemon/cli/doubts.h"
 #include "daemon/cli/formulas.h"
 #include "daemon/cli/price_figures.h"
+#include "daemon/cli/run_file_content.h"
 #include "daemon/cli/search_figures.h"
 #include "daemon/store/kept_discovery.h"
 #include "daemon/store/run_file.h"
@@ -35,6 +36,7 @@ namespace {
 
 using calib::criticism::tests::Comparison;
 using calib::criticism::tests::PosePoints;
+using calib::report::ReportContent;
 using Effects = std::vector<calib::effects::EffectPtr>;
 
 bool same_model(const Effects& a, const Effects& b) {
@@ -55,7 +57,7 @@ struct SeenModel {
 Result<SeenModel> seen(const ReportContent& c, const calib::fit::FitOptions& asked, const Effects& effects) {
   auto comparison = same_model(asked.effects, effects)
                         ? Result<Comparison>(c.comparison)
-                        : calib::criticism::tests::compare(c.source.table, with_model(asked, effects));
+                        : calib::criticism::tests::compare(c.table, with_model(asked, effects));
   if (!comparison) return tl::unexpected(comparison.error());
   auto points = calib::criticism::tests::pose_points(*comparison->fit);
   if (!points) return tl::unexpected(points.error());
@@ -64,7 +66,8 @@ Result<SeenModel> seen(const ReportContent& c, const calib::fit::FitOptions& ask
 
 /// Nine panels, with the effects that the search ended with beside the bare model, and how the run was
 /// measured.
-Result<void> draw_panels(const calib::fit::FitOptions& asked, ReportContent& c) {
+Result<void> draw_panels(const calib::fit::FitOptions& asked, std::optional<double> wanted_nT_per_m,
+                         ReportContent& c) {
   const Effects& whole = c.explained.model;
   const auto bare = seen(c, asked, {});
   if (!bare) return tl::unexpected(bare.error());
@@ -77,30 +80,27 @@ Result<void> draw_panels(const calib::fit::FitOptions& asked, ReportContent& c) 
   }
   const calib::report::PanelModel last =
       wide ? calib::report::PanelModel{wide->comparison, wide->points} : before;
-  c.panels = calib::report::panel_figures(before, wide ? &last : nullptr);
-  c.measured.push_back(calib::report::coverage_of(last));
-  const std::optional<double> wanted =
-      c.source.header ? c.source.header->options.until_tensor_sd_nT_per_m : std::nullopt;
-  if (auto accuracy = calib::report::accuracy_of(c.source.table, with_model(asked, whole), wanted))
-    c.measured.push_back(std::move(*accuracy));
-  c.measured.push_back(calib::report::time_figure(last));
-  if (auto closure = calib::report::closure_figure(last)) c.measured.push_back(std::move(*closure));
+  c.drawn.panels = calib::report::panel_figures(before, wide ? &last : nullptr);
+  c.drawn.measured.push_back(calib::report::coverage_of(last));
+  if (auto accuracy = calib::report::accuracy_of(c.table, with_model(asked, whole), wanted_nT_per_m))
+    c.drawn.measured.push_back(std::move(*accuracy));
+  c.drawn.measured.push_back(calib::report::time_figure(last));
+  if (auto closure = calib::report::closure_figure(last)) c.drawn.measured.push_back(std::move(*closure));
   return {};
 }
 
 /// What the effects of the whole model take out, cost and bring. A fit that refuses leaves its figure out.
 void draw_effects(const calib::fit::FitOptions& asked, ReportContent& c) {
-  const PoseTable& table = c.source.table;
+  const PoseTable& table = c.table;
   const auto options = with_model(asked, c.explained.model);
   const auto stage = calib::criticism::search::model_stage(table, options);
   if (!stage) return;
   if (auto steps = calib::criticism::search::waterfall(table, options)) {
     const auto& held_out = stage->held_out;
-    c.falls.push_back(
+    c.drawn.falls.push_back(
         calib::report::waterfall_of(*steps, held_out ? std::optional(held_out->residual_nT) : std::nullopt));
-    c.waterfall = std::move(*steps);
   }
-  c.prices = price_figures(table, *stage);
+  c.drawn.prices = price_figures(table, *stage);
 }
 
 Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, ReportContent& c) {
@@ -117,7 +117,7 @@ Result<void> draw_earlier(const ReportWishes& wishes, const FitFlags& flags, Rep
     all.push_back(std::move(*calibration));
   }
   if (auto figure = calib::report::history_of(calib::report::moves_among(std::move(all))))
-    c.earlier.push_back(std::move(*figure));
+    c.drawn.earlier.push_back(std::move(*figure));
   return {};
 }
 
@@ -152,8 +152,8 @@ Result<void> show_law(const calib::discovery::RemainingLaw& law, ReportContent& 
 }
 
 /// What `mgt discover --keep` found on this run, at whatever model it had then.
-Result<void> read_laws(const ReportWishes& wishes, ReportContent& c) {
-  if (!c.source.header) return {};
+Result<void> read_laws(const ReportWishes& wishes, const store::PoseSource& source, ReportContent& c) {
+  if (!source.header) return {};
   const auto file = store::RunFile::open(wishes.run, store::Access::read_only);
   if (!file) return tl::unexpected(file.error());
   const auto text = file->document(store::kDiscoveryDocument);
@@ -165,7 +165,7 @@ Result<void> read_laws(const ReportWishes& wishes, ReportContent& c) {
   if (!pages) return tl::unexpected(pages.error());
   c.laws = *std::move(pages);
   c.laws_note = fmt::format("Searched {} beside {}.", kept->at, searched_beside(kept->model));
-  if (kept->data_hash != calib::poses::data_hash(c.source.table))
+  if (kept->data_hash != calib::poses::data_hash(c.table))
     c.laws_note += " The poses of this report are others than those that were searched.";
   return {};
 }
@@ -212,27 +212,27 @@ Result<ReportContent> report_content(const ReportWishes& wishes, const FitFlags&
   auto doubts = doubts_of(wishes.run, *source, *options);
   if (!doubts) return tl::unexpected(doubts.error());
   auto instruments = instruments_of(wishes.run, *source);
-  auto judgements = judgements_of(wishes.run, *source);
+  auto file = run_file_content(*source, judgements_of(wishes.run, *source), *history);
   // Fits point to the poses; moving a table moves none of them.
   ReportContent out{.run = std::filesystem::path(wishes.run).filename().string(),
-                    .source = std::move(*source),
+                    .table = std::move(source->table),
+                    .file = std::move(file),
                     .instruments = std::move(instruments),
                     .operator_name = wishes.operator_name,
                     .site = wishes.site,
                     .fit = std::move(*fitted),
                     .comparison = std::move(*comparison),
                     .explained = std::move(*explained),
-                    .waterfall = {},
-                    .judgements = std::move(judgements),
-                    .history = std::move(*history),
                     .doubts = std::move(*doubts),
                     .command = report_command(wishes, flags)};
-  if (auto drawn = draw_panels(*options, out); !drawn) return tl::unexpected(drawn.error());
+  const std::optional<double> wanted =
+      source->header ? source->header->options.until_tensor_sd_nT_per_m : std::nullopt;
+  if (auto drawn = draw_panels(*options, wanted, out); !drawn) return tl::unexpected(drawn.error());
   if (!out.explained.model.empty()) draw_effects(*options, out);
-  out.candidates = candidate_figures(out.source.table, search, out.explained);
-  out.limits = limit_figures(out.explained);
+  out.drawn.candidates = candidate_figures(out.table, search, out.explained);
+  out.drawn.limits = limit_figures(out.explained);
   if (auto drawn = draw_earlier(wishes, flags, out); !drawn) return tl::unexpected(drawn.error());
-  if (auto read = read_laws(wishes, out); !read) return tl::unexpected(read.error());
+  if (auto read = read_laws(wishes, *source, out); !read) return tl::unexpected(read.error());
   if (law && out.laws.empty())
     if (auto shown = show_law(*law, out); !shown) return tl::unexpected(shown.error());
   return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/cli/report_page.h"
+#include "daemon/cli/report_wishes.h"
 
 #include <gmock/gmock.h>
 
@@ -8,19 +8,26 @@
 #include <set>
 
 #include "calib/poses/pose_table.h"
+#include "calib/report/report_page.h"
 #include "tests/blind/hidden_run.h"
-#include "tests/unit/calib/fit/arrays_of_any_size.h"
 #include "tests/unit/daemon/temp_dir.h"
 
 namespace mgtd::daemon::cli {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::AnyOf;
+using calib::report::report_page;
+using calib::report::ReportContent;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-ReportContent content_of(const PoseTable& table, const std::filesystem::path& folder, ReportWishes wishes) {
+/// Of a run whose third sensor warms up, with a column of a hostile name.
+ReportContent content(const std::filesystem::path& folder, ReportWishes wishes = {}) {
+  PoseTable table = calib::testing::hidden_run(
+      {.noise_nT = 0.05,
+       .hidden = [](const Pose& p, int i, int a,
+                    const Eigen::Vector3d&) { return i == 2 && a == 2 ? 0.5 * (*p.T_degC[2] - 20) : 0.0; }},
+      5);
+  for (Pose& pose : table.poses) pose.covariates["<script>"] = *pose.T_degC[2] * 0.1;
   wishes.run = (folder / "run.csv").string();
   wishes.output = "report.html";
   std::ofstream(wishes.run, std::ios::binary) << calib::poses::format_pose_table(table);
@@ -29,18 +36,7 @@ ReportContent content_of(const PoseTable& table, const std::filesystem::path& fo
   return std::move(*out);
 }
 
-/// A run whose third sensor warms up, with a column of a hostile name.
-ReportContent content(const std::filesystem::path& folder, ReportWishes wishes = {}) {
-  PoseTable table = calib::testing::hidden_run(
-      {.noise_nT = 0.05,
-       .hidden = [](const Pose& p, int i, int a,
-                    const Eigen::Vector3d&) { return i == 2 && a == 2 ? 0.5 * (*p.T_degC[2] - 20) : 0.0; }},
-      5);
-  for (Pose& pose : table.poses) pose.covariates["<script>"] = *pose.T_degC[2] * 0.1;
-  return content_of(table, folder, std::move(wishes));
-}
-
-TEST(ReportPage, LoadsNothingAndRunsNothing) {
+TEST(ReportOfARun, LoadsNothingAndRunsNothing) {
   const test::TempDir folder;
   const std::string page = report_page(content(folder.path()));
   for (const char* loaded : {"<script", "src=", "href=", "url(", "@import", " style=", "onload", "nan\""})
@@ -54,7 +50,7 @@ TEST(ReportPage, LoadsNothingAndRunsNothing) {
               ids.contains("price"));
 }
 
-TEST(ReportPage, SaysWhoWhereAndHowToMakeItAgain) {
+TEST(ReportOfARun, SaysWhoWhereAndHowToMakeItAgain) {
   const test::TempDir folder;
   const ReportContent c =
       content(folder.path(),
@@ -68,33 +64,6 @@ TEST(ReportPage, SaysWhoWhereAndHowToMakeItAgain) {
         "What each effect takes out", "What the model leaves", "What could be missing", "Parameters",
         "What remains", "How the model came to be", "Checks of the calibration"})
     EXPECT_THAT(page, HasSubstr(part));
-}
-
-TEST(ReportPage, TellsWhichPosesAreMaskedAndWhy) {
-  const test::TempDir folder;
-  ReportContent c = content(folder.path());
-  EXPECT_THAT(measured_section(c), Not(HasSubstr("masked")));
-  c.source.masked = {{.number = 12, .because = "a car <stood> there", .who = "ao", .at = {}},
-                     {.number = 40, .because = "door open", .who = "ao", .at = {}}};
-  c.history = {{.at = {}, .who = "ao", .action = "mask", .spec = "12", .result = R"({"because":"a car"})"}};
-  const std::string measured = measured_section(c);
-  EXPECT_THAT(measured, HasSubstr("; 2 more masked by the operator"));
-  EXPECT_THAT(measured, HasSubstr("a car &lt;stood&gt; there"));
-  EXPECT_THAT(measured, HasSubstr("door open"));
-  EXPECT_THAT(history_section(c), HasSubstr("<td>a car</td>"));
-}
-
-/// What one sensor cannot tell is absent; what two on a line cannot tell is a dash.
-TEST(ReportPage, ShowsNoTensorThatTheArrayDoesNotDetermine) {
-  const test::TempDir folder;
-  ReportContent c =
-      content_of(calib::testing::turned_run(calib::testing::one_sensor(), 3), folder.path(), {});
-  EXPECT_THAT(errors_section(c), Not(AnyOf(HasSubstr("nan"), HasSubstr("nT/m"), HasSubstr("tensor"))));
-  EXPECT_THAT(report_page(c), Not(HasSubstr("The tensor's standard error")));
-  for (calib::fit::ErrorSummary* e : {&c.fit.before, &c.fit.after, &*c.fit.held_out})
-    e->tensor_rmse_nT_per_m.zz = 0.25;
-  EXPECT_THAT(errors_section(c),
-              AllOf(HasSubstr(">xx</th>"), HasSubstr("<td>-</td><td>0.250</td>"), Not(HasSubstr("nan"))));
 }
 
 TEST(ReportCommand, HoldsEveryOptionThatChangesTheResult) {
