@@ -12,16 +12,16 @@
 namespace mgtd::calib::validity {
 namespace {
 
-void freeze_sensors(const fit::joint::FixedSlots& slots, FixedCalibration& out) {
+void fix_sensors(const fit::joint::FixedSlots& slots, FixedCalibration& out) {
   for (int slot = 0; slot < slots.sensor_block(); ++slot) {
     out.tested.push_back(slot);
   }
   for (int slot = slots.site(); slot < slots.effects(); ++slot) out.nuisance.push_back(slot);
 }
 
-void freeze_effect(const fit::joint::FixedSlots& slots, const calibration::CalibratedEffect& e,
-                   const effects::EffectPtr& effect, Eigen::Index row, std::vector<double>& values,
-                   std::vector<Eigen::Index>& rows, FixedCalibration& out) {
+void fix_effect(const fit::joint::FixedSlots& slots, const calibration::CalibratedEffect& e,
+                const effects::EffectPtr& effect, Eigen::Index row, std::vector<double>& values,
+                std::vector<Eigen::Index>& rows, FixedCalibration& out) {
   const bool of_site = effect->level() == effects::Level::site;
   out.needs_angles = out.needs_angles || effect->level() != effects::Level::axis;
   out.effects.push_back(effect);
@@ -52,11 +52,11 @@ Result<void> add_site_effect(const fit::joint::FixedSlots& slots, const effects:
 
 }  // namespace
 
-Result<FixedCalibration> freeze(const calibration::Calibration& c,
-                                const std::vector<effects::EffectPtr>& added) {
+Result<FixedCalibration> fixed_calibration(const calibration::Calibration& c,
+                                           const std::vector<effects::EffectPtr>& added) {
   FixedCalibration out;
   const fit::joint::FixedSlots slots{static_cast<int>(c.sensors.size())};
-  freeze_sensors(slots, out);
+  fix_sensors(slots, out);
   std::vector<double> values;
   std::vector<Eigen::Index> rows;
   Eigen::Index row = 0;
@@ -64,7 +64,7 @@ Result<FixedCalibration> freeze(const calibration::Calibration& c,
     const auto effect = effects::library::make_effect(e.effect, static_cast<int>(c.sensors.size()));
     if (!effect) return tl::unexpected(effect.error());
     // Another table is another table: its own errors are no part of what is under test.
-    if ((*effect)->level() != effects::Level::table) freeze_effect(slots, e, *effect, row, values, rows, out);
+    if ((*effect)->level() != effects::Level::table) fix_effect(slots, e, *effect, row, values, rows, out);
     row += static_cast<Eigen::Index>(e.coefficients.size());
   }
   for (const effects::EffectPtr& effect : added) {

@@ -20,7 +20,7 @@ struct FixedCalibration {
 };
 
 /// Refuses an effect that the library does not know, and an `added` one that does not belong to the site.
-[[nodiscard]] Result<FixedCalibration> freeze(const calibration::Calibration& calibration,
-                                              const std::vector<effects::EffectPtr>& added);
+[[nodiscard]] Result<FixedCalibration> fixed_calibration(const calibration::Calibration& calibration,
+                                                         const std::vector<effects::EffectPtr>& added);
 
 }  // namespace mgtd::calib::validity

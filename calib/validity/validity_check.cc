@@ -87,8 +87,8 @@ struct Score {
   Eigen::VectorXd g;
 };
 
-Score score_of(const fit::joint::Reduced& reduced, const FixedCalibration& frozen) {
-  const auto &t = frozen.tested, &n = frozen.nuisance;
+Score score_of(const fit::joint::Reduced& reduced, const FixedCalibration& fixed) {
+  const auto &t = fixed.tested, &n = fixed.nuisance;
   const Eigen::MatrixXd border = reduced.S(t, n);
   const Eigen::MatrixXd corner = inverse_of(reduced.S(n, n)).W;
   return {reduced.S(t, t) - border * corner * border.transpose(),
@@ -125,16 +125,16 @@ bool field_known(const fit::joint::JointProblem& problem) {
 /// Scatter that no change of the tested parameters explains, over the noise; 1 where that is chance. With
 /// all of them free, as a fit of these poses alone would leave it.
 double excess_of(const fit::joint::JointProblem& problem, const fit::joint::JointState& state,
-                 const FixedCalibration& frozen, Eigen::Index seen) {
-  std::vector<Eigen::Index> free = frozen.tested;
-  free.insert(free.end(), frozen.nuisance.begin(), frozen.nuisance.end());
+                 const FixedCalibration& fixed, Eigen::Index seen) {
+  std::vector<Eigen::Index> free = fixed.tested;
+  free.insert(free.end(), fixed.nuisance.begin(), fixed.nuisance.end());
   const fit::joint::JointState best = restricted_fit(problem, free, state);
   const fit::joint::PoseResiduals residuals = fit::joint::pose_residuals(problem, best);
   double observed = residuals.readings + residuals.scalars - residuals.attitude_freedom;
   for (const fit::joint::JointPose& pose : problem.poses)
     observed += pose.beside() + (problem.common_field ? 1 : 0);
   const double site = problem.site_unknowns() - (problem.common_field && field_known(problem) ? 1 : 0) +
-                      static_cast<double>(frozen.nuisance.size()) - fit::joint::kGlobals;
+                      static_cast<double>(fixed.nuisance.size()) - fit::joint::kGlobals;
   const double dof = observed - site - static_cast<double>(seen);
   const double chi2 = fit::joint::cost_of(problem, best).of_model();
   if (!(dof > 0)) return 1;
@@ -142,7 +142,7 @@ double excess_of(const fit::joint::JointProblem& problem, const fit::joint::Join
   return std::min(p, 1 - p) < kByChance / 2 ? std::sqrt(chi2 / dof) : 1;
 }
 
-Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::SensorModel>& sensors,
+Evidence evidence_of(const FixedCalibration& fixed, const PerSensor<sensor::SensorModel>& sensors,
                      const Score& score, const Seen& seen, double noise, bool free_scale) {
   const Eigen::MatrixXd A = seen.A / noise;
   const Eigen::Index n = A.rows();
@@ -154,10 +154,10 @@ Evidence evidence_of(const FixedCalibration& frozen, const PerSensor<sensor::Sen
     if ((seen.A * freedoms.col(j)).squaredNorm() > 1e-8 * whole) visible.push_back(j);
   }
   return {.difference = seen.z / noise,
-          .covariance = Eigen::MatrixXd::Identity(n, n) + linear::propagated_covariance(A, frozen.covariance),
+          .covariance = Eigen::MatrixXd::Identity(n, n) + linear::propagated_covariance(A, fixed.covariance),
           .gain = A,
           .common = A * freedoms(Eigen::all, visible),
-          .slots = shown_slots(sensors.size(), frozen.instrument),
+          .slots = shown_slots(sensors.size(), fixed.instrument),
           .sensors = sensors.size()};
 }
 
@@ -179,7 +179,7 @@ double rms_noise(const fit::joint::JointProblem& problem) {
   return std::sqrt(variance / static_cast<double>(problem.poses.size()));
 }
 
-/// The frozen calibration among the poses: problem and state, poses that contradict set aside.
+/// The fixed calibration among the poses: problem and state, poses that contradict set aside.
 struct Settled {
   fit::joint::JointProblem problem;
   fit::joint::PlacedState placed;
@@ -187,17 +187,17 @@ struct Settled {
 };
 
 Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses,
-                       const FixedCalibration& frozen, const fit::FitOptions& options,
+                       const FixedCalibration& fixed, const fit::FitOptions& options,
                        ValidityReport& report) {
   fit::joint::JointOptions joint = fit::joint::joint_options(options);
   joint.inclination_rad = joint.declination_rad = std::nullopt;
   joint.geometry = c.geometry;
-  joint.effects = frozen.effects;
+  joint.effects = fixed.effects;
   auto problem = fit::joint::joint_problem(poses, joint, fit::PoseUse::check);
   if (!problem) return tl::unexpected(problem.error());
   as_in_its_run(c, *problem);
   fit::joint::fix_gauge(*problem, joint);
-  keep_site_priors(frozen.tested, *problem);
+  keep_site_priors(fixed.tested, *problem);
   report.noise_from_dwells = weight(c, poses, *problem);
   report.noise_nT = rms_noise(*problem);
   const double f_nT =
@@ -207,22 +207,22 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
   if (!placed) return tl::unexpected(placed.error());
   out.placed = *std::move(placed);
   fit::joint::JointState& state = out.placed.state;
-  state.coefficients = frozen.coefficients;
+  state.coefficients = fixed.coefficients;
   fit::joint::set_memory_variance(out.problem, state, joint.table_sd_rad);
   fit::joint::add_memory_variance(out.problem, 1);
   do {
-    state = restricted_fit(out.problem, frozen.nuisance, std::move(state));
+    state = restricted_fit(out.problem, fixed.nuisance, std::move(state));
   } while (out.outliers.judge(out.problem, state, fit::joint::pose_residuals(out.problem, state)));
   return out;
 }
 
 /// The covariance in the platform frame in which the array stands now.
-void turn_covariance(const calibration::Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& frozen) {
+void turn_covariance(const calibration::Calibration& c, const Eigen::Matrix3d& Q, FixedCalibration& fixed) {
   const Eigen::MatrixXd J = turned(c.sensors, Q).jacobian;
-  const Eigen::MatrixXd rows = J * frozen.covariance.topRows(J.rows());
-  frozen.covariance.topRows(J.rows()) = rows;
-  const Eigen::MatrixXd columns = frozen.covariance.leftCols(J.rows()) * J.transpose();
-  frozen.covariance.leftCols(J.rows()) = columns;
+  const Eigen::MatrixXd rows = J * fixed.covariance.topRows(J.rows());
+  fixed.covariance.topRows(J.rows()) = rows;
+  const Eigen::MatrixXd columns = fixed.covariance.leftCols(J.rows()) * J.transpose();
+  fixed.covariance.leftCols(J.rows()) = columns;
 }
 
 }  // namespace
@@ -234,31 +234,31 @@ Result<ValidityReport> check(const calibration::Calibration& calibration, const 
                 fmt::format("{} poses to check with; at least {} are needed", table.poses.size(), kMinPoses),
                 "measure a dozen poses with the field in different directions");
   }
-  auto frozen = freeze(calibration, options.effects);
-  if (!frozen) return tl::unexpected(frozen.error());
-  const PoseTable poses = prepared(table, frozen->needs_angles);
+  auto fixed = fixed_calibration(calibration, options.effects);
+  if (!fixed) return tl::unexpected(fixed.error());
+  const PoseTable poses = prepared(table, fixed->needs_angles);
   ValidityReport report;
   report.calibration = calibration.id;
   report.poses = static_cast<int>(poses.poses.size());
   report.own_poses = poses::data_hash(table) == calibration.data_hash;
-  const auto settled = settle(calibration, poses, *frozen, options, report);
+  const auto settled = settle(calibration, poses, *fixed, options, report);
   if (!settled) return tl::unexpected(settled.error());
   const fit::joint::JointProblem& problem = settled->problem;
   const fit::joint::JointState& state = settled->placed.state;
   report.outliers = settled->outliers.nodes(problem, state);
-  turn_covariance(calibration, settled->placed.Q, *frozen);
-  const Score score = score_of(fit::joint::reduce(problem, state, 0), *frozen);
+  turn_covariance(calibration, settled->placed.Q, *fixed);
+  const Score score = score_of(fit::joint::reduce(problem, state, 0), *fixed);
   const Seen seen = seen_of(score);
-  report.excess = excess_of(problem, state, *frozen, seen.z.size());
+  report.excess = excess_of(problem, state, *fixed, seen.z.size());
   const double factor = small_sample_factor(calibration.poses, calibration.sensors.size());
-  frozen->covariance *= factor;
+  fixed->covariance *= factor;
   const double noise = report.excess * std::sqrt(factor);
   const bool free_scale = problem.common_field && !options.field_nT;
-  const Evidence evidence = evidence_of(*frozen, state.sensors, score, seen, noise, free_scale);
+  const Evidence evidence = evidence_of(*fixed, state.sensors, score, seen, noise, free_scale);
   report.change = judge(evidence);
   report.turn = turn_of(problem, settled->placed.Q, evidence);
   const fit::joint::JointErrors errors =
-      fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen);
+      fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::given);
   report.errors = errors.summary;
   report.residual_nT = errors.residual_nT;
   report.valid = !report.changed() && report.excess <= kMaxExcess;

@@ -29,9 +29,9 @@ fit::joint::JointOptions with(const std::vector<std::string>& effects) {
   return out;
 }
 
-/// Of the poses of set "check", the fit frozen.
-double frozen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& options,
-                     const fit::joint::JointFit& fit) {
+/// Of the poses of set "check", which this fit has not seen.
+double check_rms_nT(const PoseTable& table, const fit::joint::JointOptions& options,
+                    const fit::joint::JointFit& fit) {
   fit::joint::JointProblem problem = must(fit::joint::joint_problem(table, options, fit::PoseUse::check));
   for (fit::joint::JointPose& pose : problem.poses) {
     pose.weight = fit.pose_noise_nT.reshaped<Eigen::RowMajor>().cwiseInverse();
@@ -40,7 +40,7 @@ double frozen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& opt
   fit::joint::JointState state = fit::joint::joint_state(problem, fit.state);
   state.coefficients = fit.state.coefficients;
   fit::joint::refit_nuisances(problem, state);
-  return fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::frozen).residual_nT;
+  return fit::joint::joint_errors(problem, state, fit::joint::FixedBlock::given).residual_nT;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ double frozen_rms_nT(const PoseTable& table, const fit::joint::JointOptions& opt
 double unseen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects) {
   fit::joint::JointOptions options = with(effects);
   options.effects = must(fit::joint::profile_search(table, options));
-  return frozen_rms_nT(table, options, must(fit::joint::fit_joint(table, options)));
+  return check_rms_nT(table, options, must(fit::joint::fit_joint(table, options)));
 }
 
 Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects) {

@@ -8,7 +8,7 @@
 #include "tests/rig/scenario.h"
 
 /// This measures what improve is worth on poses that it has not seen, compared with an oracle that is told
-/// the true effects. The unseen poses lie among the others, in the set "check"; the calibration is frozen
+/// the true effects. The unseen poses lie among the others, in the set "check"; the calibration is fixed
 /// there and each pose fits its own field and attitude.
 namespace mgtd::calib::testing {
 
@@ -22,7 +22,7 @@ struct Unseen {
 /// Throws where a fit is refused.
 [[nodiscard]] Unseen unseen(const PoseTable& table, const std::vector<std::string>& true_effects);
 
-/// Residual of the poses of set "check", the calibration with these effects frozen, nT. Throws where a fit is
+/// Residual of the poses of set "check", the calibration with these effects fixed, nT. Throws where a fit is
 /// refused.
 [[nodiscard]] double unseen_rms_nT(const PoseTable& table, const std::vector<std::string>& effects);
 

@@ -113,7 +113,7 @@ std::optional<JointErrors> held_out_errors(const JointFit& fit, const Reduced& e
     // Thousands of samples settle twelve parameters so well that one step is the whole way.
     const bool all = for_each_fold_left_out(
         fit, equations, [&](const JointProblem& fold, const JointState& state) { add(fold, state, sums); });
-    return all ? std::optional(sums.errors(FixedBlock::frozen)) : std::nullopt;
+    return all ? std::optional(sums.errors(FixedBlock::given)) : std::nullopt;
   }
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const std::size_t from = fold * n / kFolds, to = (fold + 1) * n / kFolds;
@@ -126,7 +126,7 @@ std::optional<JointErrors> held_out_errors(const JointFit& fit, const Reduced& e
     refit_nuisances(own.problem, fitted->state);
     add(own.problem, fitted->state, sums);
   }
-  return sums.errors(FixedBlock::frozen);
+  return sums.errors(FixedBlock::given);
 }
 
 }  // namespace mgtd::calib::fit::joint

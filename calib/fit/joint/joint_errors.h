@@ -16,8 +16,8 @@ struct JointErrors {
   double residual_nT{0};  ///< PoseResiduals::residual_nT
 };
 
-/// Whether the fixed block was fitted to these very poses, or to others and is held.
-enum class FixedBlock { fitted, frozen };
+/// Whether the fixed block was fitted to these very poses, or is given: fitted to others, or the truth.
+enum class FixedBlock { fitted, given };
 
 /// By what the fit left out.
 [[nodiscard]] Counted counted(const JointProblem& problem);
@@ -28,7 +28,7 @@ enum class FixedBlock { fitted, frozen };
                                        FixedBlock block);
 
 /// With the normal equations of the fit, undamped. Folds contiguous in time. The calibration of each fold is
-/// fitted to the others and frozen; of a pose left out only its own field (and, where the table's angles are
+/// fitted to the others alone; of a pose left out only its own field (and, where the table's angles are
 /// known, attitude) is refitted. Empty when a fold cannot be fitted without its poses.
 [[nodiscard]] std::optional<JointErrors> held_out_errors(const JointFit& fit, const Reduced& equations);
 

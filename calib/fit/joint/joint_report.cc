@@ -90,7 +90,7 @@ std::optional<ErrorSummary> errors_of_check_poses(const PoseTable& table, const 
   set_memory_variance(*problem, state, fit.table_sd_rad);
   add_memory_variance(*problem, 1);
   refit_nuisances(*problem, state);
-  return joint_errors(*problem, state, FixedBlock::frozen).summary;
+  return joint_errors(*problem, state, FixedBlock::given).summary;
 }
 
 /// How the iterations ended. The start is weighed as the end is, so that the two chi-squares compare.
