@@ -51,18 +51,18 @@ void doubt_closure(const std::vector<calib::calibration::AppliedPose>& rows) {
 
 int run_apply(const Session& session, const ApplyArguments& args) {
   const auto output = OutputFile::at(args.output, {args.calibration, args.run});
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto flags = with_places_of({args.calibration, args.run}, {});
-  if (!flags) return report(session, flags.error());
+  if (!flags) return print_error(session, flags.error());
   const auto calibration = with_progress("apply", [&] { return calibration_of(args.calibration, *flags); });
-  if (!calibration) return report(session, calibration.error());
+  if (!calibration) return print_error(session, calibration.error());
   const auto source = store::read_run(args.run, store::Masked::kept);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   if (auto same = same_array(*calibration, args.calibration, *source); !same)
-    return report(session, same.error());
+    return print_error(session, same.error());
   const auto rows = with_progress(
       "apply", [&] { return calib::calibration::apply(*calibration, source->table, args.options); });
-  if (!rows) return report(session, rows.error());
+  if (!rows) return print_error(session, rows.error());
   const std::string csv = calib::calibration::format_applied(*rows);
   std::set<std::string> left_out;
   for (const calib::calibration::AppliedPose& row : *rows)
@@ -71,7 +71,7 @@ int run_apply(const Session& session, const ApplyArguments& args) {
     fmt::print(stderr, "{} was left out where its inputs are missing: see the column left_out\n", effect);
   doubt_closure(*rows);
   if (auto written = output->write(csv, fmt::format("{} rows", rows->size())); !written)
-    return report(session, written.error());
+    return print_error(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.apply/1"},
                 {"calibration", calibration->id},

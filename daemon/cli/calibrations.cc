@@ -16,7 +16,7 @@ namespace {
 
 int print_list(const Session& session) {
   const auto reply = ask(session, ControlCommand::calibrations_list);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json) {
     print_json(*reply);
     return 0;
@@ -43,7 +43,7 @@ Result<std::string> resolve(const Session& session, const std::string& word) {
 }
 
 int print_reply(const Session& session, const Result<nlohmann::json>& reply, std::string_view done) {
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json) {
     print_json(*reply);
   } else if (reply->contains("active")) {
@@ -63,29 +63,29 @@ struct CalibrationsArguments {
 
 int show(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
-  if (!id) return report(session, id.error());
+  if (!id) return print_error(session, id.error());
   const auto reply = ask(session, ControlCommand::calibrations_show, {{"id", *id}});
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json) {
     print_json(*reply);
     return 0;
   }
   const auto calibration = calib::calibration::calibration_from_json(*reply);
-  if (!calibration) return report(session, calibration.error());
+  if (!calibration) return print_error(session, calibration.error());
   print_text(session, calib::report::to_text(*calibration, table_width(session)));
   return 0;
 }
 
 int accept(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
-  if (!id) return report(session, id.error());
+  if (!id) return print_error(session, id.error());
   const nlohmann::json wanted{{"id", *id}, {"force", args.force}, {"why", args.why}};
   return print_reply(session, ask(session, ControlCommand::calibrations_accept, wanted), "active");
 }
 
 int reject(const Session& session, const CalibrationsArguments& args) {
   const auto id = resolve(session, args.id);
-  if (!id) return report(session, id.error());
+  if (!id) return print_error(session, id.error());
   return print_reply(session,
                      ask(session, ControlCommand::calibrations_reject, {{"id", *id}, {"why", args.why}}),
                      "rejected");
@@ -93,7 +93,7 @@ int reject(const Session& session, const CalibrationsArguments& args) {
 
 int import_file(const Session& session, const CalibrationsArguments& args) {
   const auto calibration = read_calibration(args.file);
-  if (!calibration) return report(session, calibration.error());
+  if (!calibration) return print_error(session, calibration.error());
   const auto reply = ask(session, ControlCommand::calibrations_import,
                          {{"calibration", calib::calibration::to_json(*calibration)},
                           {"origin", std::filesystem::path(args.file).filename().string()},

@@ -47,18 +47,18 @@ std::string text_of(const calib::validity::ValidityReport& checked, std::size_t 
 
 int run_check(const Session& session, const CheckArguments& args) {
   const auto calibration = read_calibration(args.calibration);
-  if (!calibration) return report(session, calibration.error());
+  if (!calibration) return print_error(session, calibration.error());
   const auto source = store::read_run(args.run);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   tell_masked(*source);
   if (auto same = same_array(*calibration, args.calibration, *source); !same)
-    return report(session, same.error());
+    return print_error(session, same.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   const auto checked = with_progress("check", *options, [&](const calib::fit::FitOptions& told) {
     return calib::validity::check(*calibration, source->table, told);
   });
-  if (!checked) return report(session, checked.error());
+  if (!checked) return print_error(session, checked.error());
   if (session.json) {
     print_json(calib::report::to_json(*checked));
   } else {

@@ -36,7 +36,7 @@ void print_json(const nlohmann::json& object) {
   fmt::print("{}\n", object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-int report(const Session& session, const Error& error, nlohmann::json beside) {
+int print_error(const Session& session, const Error& error, nlohmann::json beside) {
   fmt::print(stderr, "mgt: {}\n", error.message);
   if (!error.remedy.empty()) fmt::print(stderr, "     {}\n", error.remedy);
   if (session.json) {

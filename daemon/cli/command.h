@@ -23,7 +23,7 @@ struct Session {
 
 /// Prints the error with its remedy on stderr (with --json also {"error":{...}} on stdout, with the keys of
 /// `beside`); returns the exit code of its kind.
-int report(const Session& session, const Error& error, nlohmann::json beside = nlohmann::json::object());
+int print_error(const Session& session, const Error& error, nlohmann::json beside = nlohmann::json::object());
 
 /// Text on stdout, in the width and the colours that fit where it goes.
 void print_text(const Session& session, const std::string& text);

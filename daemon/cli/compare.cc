@@ -49,20 +49,20 @@ std::vector<calib::report::figures::Figure> figures_of(const calib::report::Pane
 
 int run_compare(const Session& session, const CompareArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   const auto comparison = with_progress("compare", *options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::tests::compare(source->table, told);
   });
   const auto refused = [&](const Error& error) {
-    if (!args.poses) return report(session, error);
+    if (!args.poses) return print_error(session, error);
     const auto measured = calib::criticism::tests::measured_points(source->table, *options);
-    return report(session, error, calib::report::to_json(measured));
+    return print_error(session, error, calib::report::to_json(measured));
   };
   if (!comparison) return refused(comparison.error());
   std::optional<calib::criticism::tests::PosePoints> points;
@@ -74,7 +74,7 @@ int run_compare(const Session& session, const CompareArguments& args) {
   }
   if (output->wanted()) {
     if (auto written = output->write(calib::report::to_csv(*points), "what is left at each pose"); !written)
-      return report(session, written.error());
+      return print_error(session, written.error());
   }
   nlohmann::json out = calib::report::to_json(*comparison);
   if (auto drawn = hand_out(
@@ -84,7 +84,7 @@ int run_compare(const Session& session, const CompareArguments& args) {
           },
           out);
       !drawn)
-    return report(session, drawn.error());
+    return print_error(session, drawn.error());
   if (session.json) {
     if (args.poses) {
       out["poses"] = calib::report::to_json(*points);

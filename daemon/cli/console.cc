@@ -10,12 +10,12 @@ namespace {
 
 int run_console(const Session& session) {
   const auto console = ask(session, ControlCommand::console);
-  if (!console) return report(session, console.error());
+  if (!console) return print_error(session, console.error());
   if (console->at("address").is_null())
-    return report(session,
-                  {ErrorCode::unreachable, "the daemon has no console",
-                   "give it an address: listen in [console] of its configuration; its log says where "
-                   "the address was occupied"});
+    return print_error(session,
+                       {ErrorCode::unreachable, "the daemon has no console",
+                        "give it an address: listen in [console] of its configuration; its log says where "
+                        "the address was occupied"});
   const std::string address = console->at("address"), token = console->at("token");
   const std::string url = address + "#token=" + token;
   if (session.json)

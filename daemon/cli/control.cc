@@ -35,7 +35,7 @@ std::string in_words(const nlohmann::json& holder) {
 
 int show(const Session& session) {
   const auto status = ask(session, ControlCommand::status);
-  if (!status) return report(session, status.error());
+  if (!status) return print_error(session, status.error());
   const nlohmann::json& holder = status->at("control").at("holder");
   if (session.json)
     print_json({{"holder", holder}});
@@ -46,7 +46,7 @@ int show(const Session& session) {
 
 int take_away(const Session& session) {
   const auto reply = ask(session, ControlCommand::control_break);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json)
     print_json(*reply);
   else
@@ -60,19 +60,19 @@ int take_away(const Session& session) {
 int hold(const Session& session, const std::string& why) {
   catch_interrupts({SIGINT, SIGTERM});
   auto client = serve::ControlClient::connect(session.control_socket);
-  if (!client) return report(session, client.error());
+  if (!client) return print_error(session, client.error());
   const auto mine = client->request(ControlCommand::control_take, {{"why", why}, {"idle_s", kSilence_s}});
-  if (!mine) return report(session, mine.error());
+  if (!mine) return print_error(session, mine.error());
   if (session.json) print_json(*mine);
   fmt::print(stderr, "control is yours until Ctrl-C; others can look, pause and abort\n");
   while (!interrupted()) {
     std::this_thread::sleep_for(kBetweenSigns);
     const auto status = client->request(ControlCommand::status);
-    if (!status) return report(session, status.error());
+    if (!status) return print_error(session, status.error());
     const nlohmann::json& holder = status->at("control").at("holder");
     if (!holder.is_null() && holder.at("since") == mine->at("since") && holder.at("pid") == mine->at("pid"))
       continue;
-    return report(session, {ErrorCode::state, "control was taken away; now " + in_words(holder), ""});
+    return print_error(session, {ErrorCode::state, "control was taken away; now " + in_words(holder), ""});
   }
   return 0;
 }

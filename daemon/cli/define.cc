@@ -191,15 +191,15 @@ void print(const Session& session, const DefineArguments& args,
 int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
   std::vector<store::Definition> all = run.source.definitions;
   if (std::erase_if(all, [&](const store::Definition& d) { return d.name == args.name; }) == 0)
-    return report(session, {ErrorCode::usage, args.run + " keeps no formula called " + args.name,
-                            "mgt model " + args.run + " lists them"});
+    return print_error(session, {ErrorCode::usage, args.run + " keeps no formula called " + args.name,
+                                 "mgt model " + args.run + " lists them"});
   for (const calib::effects::EffectPtr& e : run.options.effects) {
     if (e->name() != args.name) continue;
-    return report(session, {ErrorCode::state, "the model of the run holds " + args.name,
-                            fmt::format("mgt drop {} {} takes it out first", args.name, args.run)});
+    return print_error(session, {ErrorCode::state, "the model of the run holds " + args.name,
+                                 fmt::format("mgt drop {} {} takes it out first", args.name, args.run)});
   }
   if (auto ok = run.file->set_document(store::kFormulasDocument, store::to_text(all)); !ok)
-    return report(session, ok.error());
+    return print_error(session, ok.error());
   if (session.json) {
     print_json({{"schema", "mgt.define/1"}, {"dropped", args.name}});
   } else {
@@ -210,38 +210,39 @@ int drop(const Session& session, const DefineArguments& args, KeptRun& run) {
 
 int run_define(const Session& session, const DefineArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   auto run = open_kept_run(args.run, *args.flags, args.tried ? Keeping::nothing : Keeping::steps);
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   if (args.drop && !args.tried) return drop(session, args, *run);
   if (args.from.empty() == args.expression.empty()) {
-    return report(session, {ErrorCode::usage, "a formula is given, or taken from another run with --from",
-                            "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
+    return print_error(session,
+                       {ErrorCode::usage, "a formula is given, or taken from another run with --from",
+                        "mgt define RUN NAME 'EXPR', or mgt define RUN NAME --from OTHER.mgtrun"});
   }
   store::Definition definition;
   const std::string here = calib::poses::data_hash(run->source.table);
   if (args.from.empty()) {
     const auto spec = spec_of(args);
-    if (!spec) return report(session, spec.error());
+    if (!spec) return print_error(session, spec.error());
     if (const auto ok = calib::effects::formula::check_angles(args.expression); !ok)
-      return report(session, ok.error());
+      return print_error(session, ok.error());
     definition = {args.name, spec->text(), here, {}, {}, {}};
   } else {
     auto other = definition_from(args.from, args.name);
-    if (!other) return report(session, other.error());
+    if (!other) return print_error(session, other.error());
     definition = std::move(*other);
     definition.confirmed_log10_p.reset();
   }
   const auto spec = calib::effects::EffectSpec::parse(definition.spec);
-  if (!spec) return report(session, spec.error());
+  if (!spec) return print_error(session, spec.error());
   if (const auto ok = calib::effects::formula::check_columns(*spec, run->source.table); !ok)
-    return report(session, ok.error());
+    return print_error(session, ok.error());
   calib::fit::FitOptions options = run->options;
   std::erase_if(options.effects, [&](const calib::effects::EffectPtr& e) { return e->name() == args.name; });
   const auto x = with_progress("define", options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::tests::examine_formula(run->source.table, told, *spec);
   });
-  if (!x) return report(session, x.error());
+  if (!x) return print_error(session, x.error());
   Confirmation confirmation{.asked = definition.found_on != here};
   if (confirmation.asked) {
     confirmation.sigmas = disagreement(definition, *x);
@@ -255,11 +256,12 @@ int run_define(const Session& session, const DefineArguments& args) {
     return x->wholly_absorbed() ? std::vector<calib::report::figures::Figure>()
                                 : std::vector{calib::report::formula_figure(*x)};
   };
-  if (auto drawn = hand_out(args.figures, draw, figures); !drawn) return report(session, drawn.error());
+  if (auto drawn = hand_out(args.figures, draw, figures); !drawn) return print_error(session, drawn.error());
   if (!nothing_left(*x) && !args.tried) {
     for (const store::Definition& d : run->source.definitions)
       if (d.name == args.name && d.spec != definition.spec) fmt::print(stderr, "this replaces {}\n", d.spec);
-    if (auto ok = keep_formula(*run->file, run->source, definition); !ok) return report(session, ok.error());
+    if (auto ok = keep_formula(*run->file, run->source, definition); !ok)
+      return print_error(session, ok.error());
   }
   print(session, args, *x, definition, confirmation, std::move(figures));
   return nothing_left(*x) || (confirmation.asked && !confirmation.given) ? 1 : 0;

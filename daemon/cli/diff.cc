@@ -29,18 +29,18 @@ struct DiffArguments {
 
 int run_diff(const Session& session, const DiffArguments& args) {
   const auto flags = with_places_of({args.a, args.b}, *args.flags);
-  if (!flags) return report(session, flags.error());
+  if (!flags) return print_error(session, flags.error());
   const auto taken = [&](const std::string& path) {
     return with_progress("diff", [&] { return calibration_of(path, *flags); });
   };
   const auto a = taken(args.a);
-  if (!a) return report(session, a.error());
+  if (!a) return print_error(session, a.error());
   const auto b = taken(args.b);
-  if (!b) return report(session, b.error());
+  if (!b) return print_error(session, b.error());
   if (auto same = store::same_array({args.a, a->geometry}, {args.b, b->geometry},
                                     "compare calibrations of one array");
       !same)
-    return report(session, same.error());
+    return print_error(session, same.error());
   for (const auto* c : {&*a, &*b}) {
     if (!c->accepted_by_checks)
       fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);

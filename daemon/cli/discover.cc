@@ -44,25 +44,25 @@ struct DiscoverArguments {
 int run_discover(const Session& session, const DiscoverArguments& args) {
   using calib::discovery::LawFinding;
   auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   if (args.keep) {  // refused before the search, not after it
-    if (const auto file = open_to_keep(args.run, *source); !file) return report(session, file.error());
+    if (const auto file = open_to_keep(args.run, *source); !file) return print_error(session, file.error());
   }
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   const auto found = with_progress("discover", *options, [&](const calib::fit::FitOptions& told) {
     return calib::discovery::discover(source->table,
                                       {.fit = told, .draws = args.draws, .checks = !args.quick});
   });
-  if (!found) return report(session, found.error());
+  if (!found) return print_error(session, found.error());
   const auto before = commands_to_model(options->effects, *source, args.run);
   std::vector<std::string> names;
   if (args.keep) {
     auto file = open_to_keep(args.run, *source);
-    if (!file) return report(session, file.error());
+    if (!file) return print_error(session, file.error());
     auto formulas =
         keep_discovery(*file, *source, *options, *found, calib::report::to_json(*found, args.run, before));
-    if (!formulas) return report(session, formulas.error());
+    if (!formulas) return print_error(session, formulas.error());
     names = *std::move(formulas);
   }
   if (session.json) {

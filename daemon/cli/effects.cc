@@ -25,7 +25,7 @@ int run(const Session& session, const std::string& name) {
   if (!name.empty()) {
     const calib::effects::library::EffectFamily* family =
         calib::effects::library::find_family(calib::effects::family_name(name));
-    if (family == nullptr) return report(session, calib::effects::library::make_effect(name).error());
+    if (family == nullptr) return print_error(session, calib::effects::library::make_effect(name).error());
     families = {family, 1};
   }
   if (session.json) {

@@ -56,14 +56,14 @@ Result<store::PoseSource> imported(const ExchangeArguments& args) {
 
 int run_import(const Session& session, const ExchangeArguments& args) {
   const auto source = imported(args);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const PoseTable& table = source->table;
   const std::optional<calib::sensor::Geometry> own =
       source->header ? std::optional(source->header->options.geometry) : std::nullopt;
   const auto geometry = array_for(args.array, calib::poses::sensors_of(table), args.from, own);
-  if (!geometry) return report(session, geometry.error());
+  if (!geometry) return print_error(session, geometry.error());
   if (auto done = store::import_poses(table, args.to, header_of(table, args, *geometry)); !done)
-    return report(session, done.error());
+    return print_error(session, done.error());
   tell_written(fmt::format("{} poses", table.poses.size()), args.to);
   if (session.json)
     print_json({{"schema", "mgt.import/1"}, {"poses", table.poses.size()}, {"output", args.to}});
@@ -72,12 +72,12 @@ int run_import(const Session& session, const ExchangeArguments& args) {
 
 int run_export(const Session& session, const ExchangeArguments& args) {
   const auto output = OutputFile::at(args.to, {args.from});
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto table = store::read_poses(args.from);
-  if (!table) return report(session, table.error());
+  if (!table) return print_error(session, table.error());
   const std::string csv = calib::poses::format_pose_table(*table);
   if (auto written = output->write(csv, fmt::format("{} poses", table->poses.size())); !written)
-    return report(session, written.error());
+    return print_error(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.export/1"},
                 {"poses", table->poses.size()},

@@ -67,11 +67,11 @@ Result<void> add_figures(const ExplainArguments& args, const PoseTable& table,
 
 int run_explain(const Session& session, const ExplainArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   calib::criticism::search::ExplainOptions wanted{.fit = *options,
                                                   .also = formulas_of(*source, *options),
                                                   .confusion = args.confusion,
@@ -80,9 +80,9 @@ int run_explain(const Session& session, const ExplainArguments& args) {
     wanted.fit = told;
     return calib::criticism::search::explain(source->table, wanted);
   });
-  if (!explained) return report(session, explained.error());
+  if (!explained) return print_error(session, explained.error());
   const auto doubts = doubts_of(args.run, *source, *options);
-  if (!doubts) return report(session, doubts.error());
+  if (!doubts) return print_error(session, doubts.error());
   const auto law = args.no_law
                        ? std::nullopt
                        : law_of_the_rest(source->table, *options, explained->model, explained->finding);
@@ -90,7 +90,7 @@ int run_explain(const Session& session, const ExplainArguments& args) {
   explained->formulas_account = law && law->found && law->found->accounts_for_everything();
   nlohmann::json out = calib::report::to_json(*explained);
   if (auto drawn = add_figures(args, source->table, wanted, *explained, out); !drawn)
-    return report(session, drawn.error());
+    return print_error(session, drawn.error());
   if (session.json) {
     if (!args.no_law) out["law"] = law_json(law, *source, args.run);
     out["chosen_in_doubt"] = doubts_json(*doubts);

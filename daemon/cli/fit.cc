@@ -29,20 +29,20 @@ struct FitArguments {
 
 int run_fit(const Session& session, const FitArguments& args) {
   const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   auto fitted = with_progress("fit", *options, [&](const calib::fit::FitOptions& told) {
     return calib::fit::method_choice::fit(source->table, told);
   });
-  if (!fitted) return report(session, fitted.error());
+  if (!fitted) return print_error(session, fitted.error());
   acquire::name_instruments(fitted->calibration, args.run);
   if (auto written = output->write(calib::calibration::to_json_text(fitted->calibration),
                                    "calibration " + fitted->calibration.id);
       !written)
-    return report(session, written.error());
+    return print_error(session, written.error());
   if (session.json) {
     print_json(calib::report::to_json(*fitted));
   } else {

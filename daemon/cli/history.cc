@@ -78,17 +78,17 @@ int run_history(const Session& session, const HistoryArguments& args) {
   std::vector<std::string> read = args.files;
   read.push_back(args.flags->array.array);
   const auto output = OutputFile::at(args.figure, read, "--figure");
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   auto history =
       args.files.empty() ? ask(session, ControlCommand::calibrations_history) : history_of_files(args);
-  if (!history) return report(session, history.error());
+  if (!history) return print_error(session, history.error());
   if (output->wanted()) {
     if (!history->at("figure").is_object())
-      return report(session, {ErrorCode::refused,
-                              "there is no figure: no parameter moved from one calibration to another",
-                              "it takes two calibrations of this array that were not rejected"});
+      return print_error(session, {ErrorCode::refused,
+                                   "there is no figure: no parameter moved from one calibration to another",
+                                   "it takes two calibrations of this array that were not rejected"});
     if (auto written = output->write(history->at("figure").at("svg"), "figure"); !written)
-      return report(session, written.error());
+      return print_error(session, written.error());
   }
   if (session.json) {
     (*history)["schema"] = "mgt.history/1";

@@ -58,22 +58,22 @@ std::optional<calib::criticism::search::Waterfall> waterfall_of(const PoseTable&
 
 int run_improve(const Session& session, const ImproveArguments& args) {
   const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   const auto formulas = formulas_of(*source, *options);
   auto improved = with_progress("improve", *options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::search::improve(source->table, told, formulas);
   });
-  if (!improved) return report(session, improved.error());
+  if (!improved) return print_error(session, improved.error());
   acquire::name_instruments(improved->fit.calibration, args.run);
   const calib::calibration::Calibration& calibration = improved->fit.calibration;
   if (auto written =
           output->write(calib::calibration::to_json_text(calibration), "calibration " + calibration.id);
       !written)
-    return report(session, written.error());
+    return print_error(session, written.error());
   const auto whole = with_final_model(*options, calibration);
   const auto steps = whole ? waterfall_of(source->table, *whole) : std::nullopt;
   const auto law = whole && !args.no_law

@@ -23,7 +23,7 @@ int print_end(const Session& session, const nlohmann::json& status) {
 /// Tells the operator what to do until the daemon has seen all arms or gives up.
 int run_magnet_test(const Session& session) {
   auto client = serve::ControlClient::connect(session.control_socket);
-  if (!client) return report(session, client.error());
+  if (!client) return print_error(session, client.error());
   catch_interrupts({SIGINT, SIGTERM, SIGHUP});
   auto status = client->request(ControlCommand::magnet_start);
   std::string told;
@@ -33,7 +33,7 @@ int run_magnet_test(const Session& session) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     status = client->request(interrupted() ? ControlCommand::magnet_stop : ControlCommand::magnet_status);
   }
-  return status ? print_end(session, *status) : report(session, status.error());
+  return status ? print_end(session, *status) : print_error(session, status.error());
 }
 
 }  // namespace

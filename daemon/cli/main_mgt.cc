@@ -151,9 +151,9 @@ int run(int argc, char** argv) {
     session.json =
         session.json || std::find(words.begin(), words.end(), std::string_view("--json")) != words.end();
     const auto unknown = unknown_command(app);
-    return mgtd::daemon::cli::report(session, unknown ? *unknown : wrong_words(app, error));
+    return mgtd::daemon::cli::print_error(session, unknown ? *unknown : wrong_words(app, error));
   } catch (const std::bad_alloc&) {
-    return mgtd::daemon::cli::report(
+    return mgtd::daemon::cli::print_error(
         session, {mgtd::ErrorCode::io, "there is not enough memory for this",
                   "end other programs, raise the limit of this one (ulimit -v), or give it fewer poses"});
   }

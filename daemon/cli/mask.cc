@@ -63,12 +63,12 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
   });
   const auto after = with_progress(
       action, run.options, [&](const calib::fit::FitOptions& told) { return residual_nT(table, told); });
-  if (!after && after.error().code != ErrorCode::refused) return report(session, after.error());
+  if (!after && after.error().code != ErrorCode::refused) return print_error(session, after.error());
   const std::string spec = pose_numbers_text(numbers);
   json result{{"because", args.why}};
   result["rms_before_nT"] = before ? json(*before) : json();
   result["rms_after_nT"] = after ? json(*after) : json();
-  if (auto ok = keep_step(run, action, spec, result); !ok) return report(session, ok.error());
+  if (auto ok = keep_step(run, action, spec, result); !ok) return print_error(session, ok.error());
   std::set<int> masked = masked_in(run.source);
   for (const int number : numbers) {
     if (action == "mask") {
@@ -98,34 +98,34 @@ int keep_mask(const Session& session, const MaskArguments& args, const std::stri
 
 int run_mask(const Session& session, const MaskArguments& args) {
   const auto numbers = store::parse_pose_numbers(fmt::format("{}", fmt::join(args.poses, ",")));
-  if (!numbers) return report(session, numbers.error());
+  if (!numbers) return print_error(session, numbers.error());
   auto run = open_kept_run(args.run, *args.flags);
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   run->who = args.who;
   const auto table = store::without_poses(run->source.table, *numbers);
-  if (!table) return report(session, table.error());
+  if (!table) return print_error(session, table.error());
   return keep_mask(session, args, "mask", *numbers, *table, *run);
 }
 
 int run_unmask(const Session& session, const MaskArguments& args) {
   const auto numbers = store::parse_pose_numbers(fmt::format("{}", fmt::join(args.poses, ",")));
-  if (!numbers) return report(session, numbers.error());
+  if (!numbers) return print_error(session, numbers.error());
   auto run = open_kept_run(args.run, *args.flags);
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   run->who = args.who;
   const std::set<int> masked = masked_in(run->source);
   if (!std::includes(masked.begin(), masked.end(), numbers->begin(), numbers->end())) {
-    return report(session,
-                  {ErrorCode::usage, fmt::format("not all of {} are masked", pose_numbers_text(*numbers)),
-                   masked.empty() ? "no pose of this run is" : "masked are " + pose_numbers_text(masked)});
+    return print_error(
+        session, {ErrorCode::usage, fmt::format("not all of {} are masked", pose_numbers_text(*numbers)),
+                  masked.empty() ? "no pose of this run is" : "masked are " + pose_numbers_text(masked)});
   }
   auto all = store::read_run(args.run, store::Masked::kept);
-  if (!all) return report(session, all.error());
+  if (!all) return print_error(session, all.error());
   std::set<int> still;
   std::set_difference(masked.begin(), masked.end(), numbers->begin(), numbers->end(),
                       std::inserter(still, still.end()));
   const auto table = store::without_poses(std::move(all->table), still);
-  if (!table) return report(session, table.error());
+  if (!table) return print_error(session, table.error());
   return keep_mask(session, args, "unmask", *numbers, *table, *run);
 }
 

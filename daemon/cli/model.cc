@@ -92,10 +92,10 @@ int conclude(const Session& session, const ModelArguments& args, KeptRun& run,
   const auto steps = waterfall_of(run, options);
   json pictures = json::object();
   if (auto drawn = draw(args.figures, run, change, steps, options, pictures); !drawn)
-    return report(session, drawn.error());
+    return print_error(session, drawn.error());
   if (keep) {
     if (auto ok = keep_step(run, change.adding ? "add" : "drop", spec, made); !ok)
-      return report(session, ok.error());
+      return print_error(session, ok.error());
   }
   if (session.json) {
     json out = std::move(made);
@@ -131,20 +131,20 @@ bool is_left_out_of_stream(const calib::effects::Effect& effect) {
 
 int run_add(const Session& session, const ModelArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   run->who = args.who;
   const int sensors = calib::effects::EffectContext{.table = &run->source.table, .offset_nT = {}}.sensors();
   const auto effect =
       calib::effects::library::make_effect(store::whole_spec(args.effect, run->source.definitions), sensors);
-  if (!effect) return report(session, effect.error());
+  if (!effect) return print_error(session, effect.error());
   const auto change = with_progress("add", run->options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::search::add_effect(run->source.table, told, *effect);
   });
-  if (!change) return report(session, change.error());
+  if (!change) return print_error(session, change.error());
   const auto found = calib::effects::library::make_effect(change->spec, sensors);
-  if (!found) return report(session, found.error());
+  if (!found) return print_error(session, found.error());
   if (is_left_out_of_stream(**found))
     fmt::print(stderr,
                "mgt: {0} looks back over the poses of a run, and samples of a stream have none before them: "
@@ -176,14 +176,14 @@ Result<std::size_t> place_of(const KeptRun& run, const std::string& effect) {
 
 int run_drop(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags, args.keeping());
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   run->who = args.who;
   const auto place = place_of(*run, args.effect);
-  if (!place) return report(session, place.error());
+  if (!place) return print_error(session, place.error());
   const auto change = with_progress("drop", run->options, [&](const calib::fit::FitOptions& told) {
     return calib::criticism::search::drop_effect(run->source.table, told, *place);
   });
-  if (!change) return report(session, change.error());
+  if (!change) return print_error(session, change.error());
   calib::fit::FitOptions options = run->options;
   options.effects.erase(options.effects.begin() + static_cast<std::ptrdiff_t>(*place));
   return conclude(session, args, *run, *change, run->source.model[*place], options, {});
@@ -191,17 +191,18 @@ int run_drop(const Session& session, const ModelArguments& args) {
 
 int run_undo(const Session& session, const ModelArguments& args) {
   auto run = open_kept_run(args.run, *args.flags);
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   run->who = args.who;
   const auto steps = run->file->model_steps();
-  if (!steps) return report(session, steps.error());
+  if (!steps) return print_error(session, steps.error());
   const auto last = store::undoable(*steps);
   if (!last) {
-    return report(session,
-                  {ErrorCode::refused, "there is nothing to undo: the run keeps the model it began with",
-                   "mgt add puts an effect in"});
+    return print_error(session,
+                       {ErrorCode::refused, "there is nothing to undo: the run keeps the model it began with",
+                        "mgt add puts an effect in"});
   }
-  if (auto ok = keep_step(*run, "undo", last->spec, json::object()); !ok) return report(session, ok.error());
+  if (auto ok = keep_step(*run, "undo", last->spec, json::object()); !ok)
+    return print_error(session, ok.error());
   std::vector<store::ModelStep> all = *steps;
   all.push_back({.at = {}, .who = {}, .action = "undo", .spec = last->spec, .result = {}});
   const auto model = store::current_model(all);
@@ -232,11 +233,11 @@ json masked_json(const std::vector<store::MaskedPose>& masked) {
 
 int run_model(const Session& session, const ModelArguments& args) {
   const auto file = store::RunFile::open(args.run, store::Access::read_only);
-  if (!file) return report(session, file.error());
+  if (!file) return print_error(session, file.error());
   const auto steps = file->model_steps();
-  if (!steps) return report(session, steps.error());
+  if (!steps) return print_error(session, steps.error());
   const auto source = store::read_run(args.run);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto model = store::current_model(*steps);
   const auto masked = store::masked_poses(*steps);
   const std::string here = calib::poses::data_hash(source->table);

@@ -118,25 +118,26 @@ Report answer(const NextArguments& args, const store::PoseSource& source,
 int run_next(const Session& session, const NextArguments& args) {
   const bool place = args.pair.size() == 1 && calib::effects::Where::parse(args.pair.front());
   if (args.pair.size() == 1 && !place)
-    return report(session, {ErrorCode::usage, "one effect alone leaves nothing to settle",
-                            "name two, or none; a place (s3.z) asks about what mgt discover finds there"});
+    return print_error(session,
+                       {ErrorCode::usage, "one effect alone leaves nothing to settle",
+                        "name two, or none; a place (s3.z) asks about what mgt discover finds there"});
   const auto output = OutputFile::at(args.output, files_read(args.run, *args.flags));
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   const auto doubts = doubts_of(args.run, *source, *options);
-  if (!doubts) return report(session, doubts.error());
+  if (!doubts) return print_error(session, doubts.error());
   const auto next = with_progress("next", *options, [&](const calib::fit::FitOptions& told) {
     return answer(args, *source, told, *doubts);
   });
-  if (!next) return report(session, next.error());
+  if (!next) return print_error(session, next.error());
   if (!next->steps.empty()) {
     const calib::criticism::search::NextStep& best = next->steps.front();
     const std::string what = fmt::format("{} poses ({})", best.poses.size(), best.measurement.action);
     if (auto written = output->write(calib::report::pose_list(best), what); !written)
-      return report(session, written.error());
+      return print_error(session, written.error());
   }
   if (session.json) {
     nlohmann::json out = calib::report::to_json(*next);

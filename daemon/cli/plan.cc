@@ -192,23 +192,23 @@ Result<Wanted> wanted_of(const PlanArguments& args) {
 
 int run_plan(const Session& session, const PlanArguments& args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   const auto wanted = wanted_of(args);
-  if (!wanted) return report(session, wanted.error());
+  if (!wanted) return print_error(session, wanted.error());
   const auto planned = with_progress("plan", [&] { return calib::design::evaluate_design(wanted->request); });
-  if (!planned) return report(session, planned.error());
+  if (!planned) return print_error(session, planned.error());
   std::optional<run::LimitsCost> limits;
   if (wanted->run) {
     auto cost = with_progress(
         "plan", [&] { return run::limits_cost(wanted->run->options, wanted->run->limits, wanted->request); });
-    if (!cost) return report(session, cost.error());
+    if (!cost) return print_error(session, cost.error());
     limits = *std::move(cost);
   }
   nlohmann::json out = calib::report::to_json(*planned);
   if (auto drawn = hand_out(
           args.figures, [&] { return calib::report::design_figures(wanted->request, *planned); }, out);
       !drawn)
-    return report(session, drawn.error());
+    return print_error(session, drawn.error());
   if (session.json) {
     if (limits) out["limits"] = run::to_json(*limits);
     print_json(out);

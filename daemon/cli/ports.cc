@@ -66,9 +66,9 @@ std::map<std::string, std::string> serials_of(const nlohmann::json& status) {
 /// Fills in the serial numbers of the instruments that answer now.
 int write_serials(const Session& session, const std::string& file) {
   const auto text = read_file(file);
-  if (!text) return report(session, text.error());
+  if (!text) return print_error(session, text.error());
   const auto status = ask(session, ControlCommand::status);
-  if (!status) return report(session, status.error());
+  if (!status) return print_error(session, status.error());
   const SerialLines done = with_serials(*text, serials_of(*status));
   if (!done.written.empty()) {
     if (const auto good = config::parse_config(done.text, file); !good) {
@@ -77,7 +77,7 @@ int write_serials(const Session& session, const std::string& file) {
       return 2;
     }
     if (auto written = store::write_durably(file, done.text); !written)
-      return report(session, written.error());
+      return print_error(session, written.error());
   }
   if (session.json) {
     print_json({{"schema", "mgt.ports/1"}, {"written", done.written}, {"stated", done.stated}});

@@ -126,16 +126,16 @@ void print_summary(const acquire::ReplayCounts& counts, std::uint64_t damaged) {
 
 int run_replay(const Session& session, const ReplayArguments& args) {
   const auto journals = journals_of(args.journals);
-  if (!journals) return report(session, journals.error());
+  if (!journals) return print_error(session, journals.error());
   for (const Error& why : journals->left_out) fmt::print(stderr, "{}\n", why.text());
   std::vector<std::string> read = journals->play;
   read.push_back(args.calibration);
   const auto place = OutputFile::at(args.output, read);
-  if (!place) return report(session, place.error());
+  if (!place) return print_error(session, place.error());
   std::shared_ptr<const calib::calibration::Calibration> instead;
   if (!args.calibration.empty()) {
     auto calibration = read_calibration(args.calibration);
-    if (!calibration) return report(session, calibration.error());
+    if (!calibration) return print_error(session, calibration.error());
     instead = std::make_shared<const calib::calibration::Calibration>(*std::move(calibration));
   }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
@@ -144,8 +144,8 @@ int run_replay(const Session& session, const ReplayArguments& args) {
   if (place->wanted() && !printed) {
     file.reset(std::fopen(args.output.c_str(), "we"));
     if (file == nullptr)
-      return report(session,
-                    {ErrorCode::io, args.output + ": cannot be written", "check the folder and the disk"});
+      return print_error(
+          session, {ErrorCode::io, args.output + ": cannot be written", "check the folder and the disk"});
     output.file = file.get();
   }
   acquire::Replay replay([&output](std::string_view line) { output.write(line); }, instead);
@@ -154,12 +154,12 @@ int run_replay(const Session& session, const ReplayArguments& args) {
     PlayProgress progress(journals->play, output.file == stdout && isatty(STDOUT_FILENO) != 0);
     for (const std::string& path : journals->play) {
       const auto unread = play(path, replay, progress);
-      if (!unread) return report(session, unread.error());
+      if (!unread) return print_error(session, unread.error());
       damaged += *unread;
     }
   }
   if (file && (std::fflush(file.get()) != 0 || output.failed > 0))
-    return report(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
+    return print_error(session, {ErrorCode::io, "not every line could be written", "free space on the disk"});
   if (printed) end_standard_output();
   if (place->wanted()) tell_written("stream", args.output);
   if (session.json) print_json(summary(replay.counts(), journals->left_out, damaged));

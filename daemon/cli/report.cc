@@ -33,14 +33,14 @@ int run_report(const Session& session, const ReportArguments& args) {
   std::vector<std::string> read = files_read(args.wishes.run, *args.flags);
   read.insert(read.end(), args.wishes.earlier.begin(), args.wishes.earlier.end());
   const auto output = OutputFile::at(args.wishes.output, read);
-  if (!output) return report(session, output.error());
+  if (!output) return print_error(session, output.error());
   const auto content = [&] {
     const WorkProgress shown("report");
     return report_content(args.wishes, *args.flags, shown.rounds());
   }();
-  if (!content) return report(session, content.error());
+  if (!content) return print_error(session, content.error());
   const std::string page = calib::report::report_page(*content);
-  if (auto written = output->write(page, "report"); !written) return report(session, written.error());
+  if (auto written = output->write(page, "report"); !written) return print_error(session, written.error());
   if (session.json)
     print_json({{"schema", "mgt.report/1"},
                 {"output", args.wishes.output},

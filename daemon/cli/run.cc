@@ -76,18 +76,18 @@ int follow(const Session& session) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   catch_interrupts({SIGINT});
   auto client = serve::ControlClient::connect(session.control_socket);
-  if (!client) return report(session, client.error());
+  if (!client) return print_error(session, client.error());
   std::string judged;
   InputLines keyboard(STDIN_FILENO);
   RunNotices notices;
   int last_tenth = -1;
   while (!interrupted()) {
     const auto reply = client->request(ControlCommand::run_status);
-    if (!reply) return report(session, reply.error());
+    if (!reply) return print_error(session, reply.error());
     const auto run = run_status_from_json(*reply);
-    if (!run) return report(session, run.error());
+    if (!run) return print_error(session, run.error());
     if (run->state == RunState::idle)
-      return report(session, {ErrorCode::state, "no run is going on", "mgt run start begins one"});
+      return print_error(session, {ErrorCode::state, "no run is going on", "mgt run start begins one"});
     if (run->judged != judged && run->state != RunState::done) {
       judged = run->judged;
       fmt::print(stderr, "{}{}\n", terminal ? "\r\033[K" : "", judged);
@@ -139,9 +139,9 @@ Result<nlohmann::json> request_of(const RunArguments& args) {
 
 int start(const Session& session, const RunArguments& args) {
   const auto request = request_of(args);
-  if (!request) return report(session, request.error());
+  if (!request) return print_error(session, request.error());
   const auto reply = ask(session, ControlCommand::run_start, *request);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (!args.detach) return follow(session);
   if (session.json) print_json(*reply);
   return 0;
@@ -170,9 +170,9 @@ Result<std::optional<run::LimitsCost>> cost_of_limits(const nlohmann::json& repl
 
 int dry_run(const Session& session, const RunArguments& args) {
   const auto request = request_of(args);
-  if (!request) return report(session, request.error());
+  if (!request) return print_error(session, request.error());
   auto reply = ask(session, ControlCommand::run_dry_run, *request);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   const auto limits = cost_of_limits(*reply);
   if (!limits)
     fmt::print(stderr, "what the limits of the table cost cannot be computed: {}\n", limits.error().text());
@@ -189,10 +189,10 @@ int dry_run(const Session& session, const RunArguments& args) {
 
 int simple(const Session& session, ControlCommand command, bool then_follow) {
   const auto reply = ask(session, command);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (then_follow) return follow(session);
   const auto run = run_status_from_json(*reply);
-  if (!run) return report(session, run.error());
+  if (!run) return print_error(session, run.error());
   if (session.json) {
     print_json(*reply);
   } else {
@@ -204,7 +204,7 @@ int simple(const Session& session, ControlCommand command, bool then_follow) {
 
 int course(const Session& session) {
   const auto reply = ask(session, ControlCommand::run_course);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json)
     print_json(*reply);
   else
@@ -214,7 +214,7 @@ int course(const Session& session) {
 
 int events(const Session& session) {
   const auto reply = ask(session, ControlCommand::run_events);
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json)
     print_json(*reply);
   else
@@ -227,7 +227,7 @@ int enter(const Session& session, const RunArguments& args) {
                          {{"azimuth_deg", args.scales_deg[0]},
                           {"pitch_deg", args.scales_deg[1]},
                           {"roll_deg", args.scales_deg[2]}});
-  if (!reply) return report(session, reply.error());
+  if (!reply) return print_error(session, reply.error());
   if (session.json)
     print_json(*reply);
   else

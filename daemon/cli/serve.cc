@@ -78,11 +78,11 @@ int run_serve(const Session& session, const ServeArguments& args) {
   const bool one = fs::is_regular_file(args.what, ec);
   const std::string extension = fs::path(args.what).extension().string();
   if (!one && !fs::is_directory(args.what, ec))
-    return report(session, {ErrorCode::bad_input, args.what + " is no run and no folder",
-                            "name a *.mgtrun, a pose table in CSV, or a folder of them"});
+    return print_error(session, {ErrorCode::bad_input, args.what + " is no run and no folder",
+                                 "name a *.mgtrun, a pose table in CSV, or a folder of them"});
   if (one && extension != ".mgtrun" && extension != ".csv")
-    return report(session, {ErrorCode::bad_input, args.what + " is neither *.mgtrun nor *.csv",
-                            "mgt import makes a run file of other tables"});
+    return print_error(session, {ErrorCode::bad_input, args.what + " is neither *.mgtrun nor *.csv",
+                                 "mgt import makes a run file of other tables"});
   spdlog::set_level(spdlog::level::warn);
   std::signal(SIGPIPE, SIG_IGN);
   boost::asio::io_context io(1);
@@ -100,8 +100,8 @@ int run_serve(const Session& session, const ServeArguments& args) {
                .bounds = {.memory_bytes = serve::console::memory_bytes() / 2 / kAtOnce}}},
       std::move(source));
   if (auto started = server.start(); !started)
-    return report(session, {started.error().code, started.error().message,
-                            "choose another port with --port; 0 takes a free one"});
+    return print_error(session, {started.error().code, started.error().message,
+                                 "choose another port with --port; 0 takes a free one"});
   const std::string url = server.address() + "#token=" + server.token().text();
   if (session.json) {
     print_json({{"address", server.address()}, {"token", server.token().text()}, {"url", url}});

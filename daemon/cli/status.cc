@@ -239,7 +239,7 @@ void write_status(Text to, const nlohmann::json& s) {
 
 int run_status(const Session& session, double patience_s) {
   const auto status = status_after(session, patience_s);
-  if (!status) return report(session, status.error());
+  if (!status) return print_error(session, status.error());
   const int code = patience_s > 0 && !all_live(*status) ? 1 : 0;
   if (session.json) {
     print_json(*status);

@@ -172,7 +172,7 @@ WatchForm form_of(const Session& session, const WatchArguments& args) {
 
 int run_watch(const Session& session, const WatchArguments& args) {
   auto reader = open_stream(session, args);
-  if (!reader) return report(session, reader.error());
+  if (!reader) return print_error(session, reader.error());
   const WatchForm form = form_of(session, args);
   std::string criticism;
   Gaps gaps;
@@ -181,9 +181,9 @@ int run_watch(const Session& session, const WatchArguments& args) {
     const auto object = reader->next(std::chrono::seconds(30));
     if (!object || !*object) {
       gaps.end();
-      return report(session, object ? Error{ErrorCode::unreachable, "the stream is silent for 30 s",
-                                            "mgt status says why"}
-                                    : object.error());
+      return print_error(session, object ? Error{ErrorCode::unreachable, "the stream is silent for 30 s",
+                                                 "mgt status says why"}
+                                         : object.error());
     }
     if (form == WatchForm::objects) {
       print_json(**object);

@@ -34,24 +34,24 @@ struct WhyArguments {
 
 int run_why(const Session& session, WhyArguments args) {
   if (const auto ready = ready_for_figures(session, args.figures); !ready)
-    return report(session, ready.error());
+    return print_error(session, ready.error());
   if (const std::size_t at = args.effect.find('@'); at != std::string::npos && args.at.empty())
     args.at = args.effect.substr(at + 1, args.effect.find(',', at) - at - 1);
   const auto source = read_source(args.run, *args.flags);
-  if (!source) return report(session, source.error());
+  if (!source) return print_error(session, source.error());
   const auto options = fit_options(*args.flags, *source);
-  if (!options) return report(session, options.error());
+  if (!options) return print_error(session, options.error());
   calib::criticism::search::ExplainOptions wanted{.fit = *options, .also = formulas_of(*source, *options)};
   const auto evidence = with_progress("why", *options, [&](const calib::fit::FitOptions& told) {
     wanted.fit = told;
     return calib::criticism::search::evidence_of(source->table, wanted, args.effect, args.at, args.poses);
   });
-  if (!evidence) return report(session, evidence.error());
+  if (!evidence) return print_error(session, evidence.error());
   nlohmann::json out = calib::report::to_json(*evidence);
   if (auto drawn = hand_out(
           args.figures, [&] { return std::vector{calib::report::evidence_of(*evidence)}; }, out);
       !drawn)
-    return report(session, drawn.error());
+    return print_error(session, drawn.error());
   if (session.json) {
     if (args.poses) out["figure"] = calib::report::words_json(calib::report::evidence_of(*evidence));
     print_json(out);

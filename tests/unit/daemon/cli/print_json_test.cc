@@ -23,7 +23,7 @@ TEST(PrintJson, AnErrorThatNamesAPathWhichIsNotUtf8IsPrinted) {
   Session session;
   session.json = true;
   ::testing::internal::CaptureStdout();
-  EXPECT_NE(report(session, Error{ErrorCode::io, "run-\xFF.csv: no such file", "name another"}), 0);
+  EXPECT_NE(print_error(session, Error{ErrorCode::io, "run-\xFF.csv: no such file", "name another"}), 0);
   const auto printed = nlohmann::json::parse(::testing::internal::GetCapturedStdout());
   EXPECT_EQ(printed.at("error").at("message"), std::string(kReplaced) + ": no such file");
 }
