@@ -8,7 +8,7 @@
 #include "calib/discovery/law_search.h"
 
 /// law_round() makes one round of the search: it scores every formula against what is left and ranks the one
-/// that leads beside its rivals.
+/// that leads beside its alternatives.
 namespace mgtd::calib::discovery {
 
 /// Chance of a formula where nothing is there, of the whole search.

@@ -8,7 +8,7 @@
 /// the search is repeated in what is left, until nothing stands out. Then each is looked for again beside the
 /// others, because two laws on one axis first show as a compromise.
 ///
-/// Random rivals are held against all laws together. T_m is the evidence of the first m laws, R_m that of an
+/// Random offsets are held against all laws together. T_m is the evidence of the first m laws, R_m that of an
 /// offset that walks or jumps in what they leave; the models are T_m (laws alone) and T_m + R_m (both).
 ///
 /// Instead of law i: its formulas stand in every model of i laws or more, an offset in their place in those

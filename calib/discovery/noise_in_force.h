@@ -5,8 +5,8 @@
 #include "calib/criticism/tests/criticism.h"
 
 /// NoiseInForce holds the residual in which laws are looked for, in units of the noise that the tests of the
-/// library found (criticism/tests/judgement.h). Offsets that wander are not taken out: a walk is a rival of
-/// every formula.
+/// library found (criticism/tests/judgement.h). Offsets that wander are not taken out: a walk is an
+/// alternative to every formula.
 namespace mgtd::calib::discovery {
 
 struct NoiseInForce {

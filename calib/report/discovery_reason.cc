@@ -153,7 +153,7 @@ std::string what_next(const DiscoveryReport& r, const std::string& run,
       return "record more (supplies, loads, temperatures of the electronics) and run again; mgt report " +
              run + " shows the residual against everything that was recorded";
     case Rule::library:
-      return "mgt explain " + run + " names it, with its rivals and what it costs";
+      return "mgt explain " + run + " names it, with its alternatives and what it costs";
     case Rule::formulas_open:
     case Rule::none:
       if (!kept.empty())

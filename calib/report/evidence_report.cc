@@ -11,7 +11,7 @@
 
 #include "calib/report/explain_json.h"
 #include "calib/report/json_number.h"
-#include "calib/report/pose_points_report.h"
+#include "calib/report/residual_columns_report.h"
 #include "calib/report/shown_number.h"
 #include "calib/report/size_text.h"
 #include "calib/stats/probability.h"
@@ -32,7 +32,7 @@ json left_json(const criticism::search::Left& left) {
            {"chi2", left.chi2},
            {"dof", left.dof},
            {"maps", std::move(maps)}};
-  if (left.points) out["poses"] = to_json(*left.points);
+  if (left.by_pose) out["poses"] = to_json(*left.by_pose);
   return out;
 }
 

@@ -13,12 +13,12 @@
 #include "calib/report/figure_words.h"
 #include "calib/report/figures/sky.h"
 #include "calib/report/figures/sky_figures.h"
-#include "calib/report/point_columns.h"
+#include "calib/report/named_columns.h"
 
 namespace mgtd::calib::report {
 namespace {
 
-using criticism::tests::MeasuredPoints;
+using criticism::tests::MeasuredColumns;
 using nlohmann::json;
 
 /// Lowest and highest of what is finite.
@@ -44,9 +44,9 @@ Extremes extremes_of_all(const Eigen::MatrixXd& m) {
   return extremes_of(Eigen::Map<const Eigen::VectorXd>(m.data(), m.size()));
 }
 
-std::vector<double> values_of(const std::vector<PointColumn>& columns, const std::string& group) {
+std::vector<double> values_of(const std::vector<NamedColumn>& columns, const std::string& group) {
   std::vector<double> out;
-  for (const PointColumn& column : columns)
+  for (const NamedColumn& column : columns)
     if (column.group == group) out.insert(out.end(), column.values.begin(), column.values.end());
   return out;
 }
@@ -63,7 +63,7 @@ json panel(std::string name, std::string title, std::string caption, std::string
 }
 
 /// The sensor that was looked at from the fewest sides, and how far the farthest direction is from a pose.
-std::pair<Eigen::Index, double> largest_hole_deg(const MeasuredPoints& p) {
+std::pair<Eigen::Index, double> largest_hole_deg(const MeasuredColumns& p) {
   std::pair<Eigen::Index, double> out{0, 0};
   for (Eigen::Index s = 0; s < p.length_nT.rows(); ++s) {
     std::vector<Eigen::Vector3d> directions;
@@ -78,7 +78,7 @@ std::pair<Eigen::Index, double> largest_hole_deg(const MeasuredPoints& p) {
   return out;
 }
 
-json raw_panel(const MeasuredPoints& p) {
+json raw_panel(const MeasuredColumns& p) {
   const Extremes raw = extremes_of_all(p.raw_nT);
   return panel(
       "measured-raw", "Length of the raw readings against time",
@@ -91,7 +91,7 @@ json raw_panel(const MeasuredPoints& p) {
                   raw.low, raw.high));
 }
 
-json sky_panel(const MeasuredPoints& p) {
+json sky_panel(const MeasuredColumns& p) {
   const auto [sensor, hole_deg] = largest_hole_deg(p);
   return panel("measured-skies", "The same over the direction of the readings",
                "Each sensor saw the field in these directions.",
@@ -102,11 +102,11 @@ json sky_panel(const MeasuredPoints& p) {
 }
 
 /// Lengths less the mean over the sensors.
-Eigen::MatrixXd against_each_other(const MeasuredPoints& p) {
+Eigen::MatrixXd against_each_other(const MeasuredColumns& p) {
   return p.length_nT.rowwise() - p.length_nT.colwise().mean();
 }
 
-json angles_panel(const std::vector<PointColumn>& columns) {
+json angles_panel(const std::vector<NamedColumn>& columns) {
   std::vector<std::string> spans;
   bool any = false;
   int axes = 0;
@@ -124,7 +124,7 @@ json angles_panel(const std::vector<PointColumn>& columns) {
       axes < 2);
 }
 
-json spread_panel(const MeasuredPoints& p) {
+json spread_panel(const MeasuredColumns& p) {
   const Extremes e = extremes_of_all(p.spread_nT);
   if (!e.any) return {};
   return panel(
@@ -135,7 +135,7 @@ json spread_panel(const MeasuredPoints& p) {
                   e.low, e.high));
 }
 
-json panels_of(const MeasuredPoints& p, const std::vector<PointColumn>& columns) {
+json panels_of(const MeasuredColumns& p, const std::vector<NamedColumn>& columns) {
   json out = json::array();
   const auto add = [&](json words) {
     if (!words.is_null()) out.push_back(std::move(words));
@@ -175,7 +175,7 @@ json panels_of(const MeasuredPoints& p, const std::vector<PointColumn>& columns)
 
 }  // namespace
 
-json to_json(const MeasuredPoints& p) {
+json to_json(const MeasuredColumns& p) {
   json number = json::array(), set = json::array();
   for (const Pose* pose : p.pose) {
     number.push_back(pose->number);
@@ -183,7 +183,7 @@ json to_json(const MeasuredPoints& p) {
   }
   const Eigen::Index sensors = p.length_nT.rows();
   const std::vector<std::string> channels = channel_names(3 * sensors), names = sensor_names(sensors);
-  std::vector<PointColumn> columns = circumstance_columns(p.pose, p.t_h, p.columns, sensors);
+  std::vector<NamedColumn> columns = circumstance_columns(p.pose, p.t_h, p.columns, sensors);
   columns.push_back({"f_nT", "", p.f_nT});
   add_rows("reading_nT", channels, p.reading_nT, columns);
   add_rows("spread_nT", names, p.spread_nT, columns);

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 
-#include "calib/criticism/tests/measured_points.h"
+#include "calib/criticism/tests/measured_columns.h"
 
 /// to_json() writes what a run shows by itself where the fit is refused: the readings, the field and the
 /// circumstances.
@@ -13,6 +13,6 @@ namespace mgtd::calib::report {
 ///            readings against time and direction, the readings, the field, temperatures, table angles and
 ///            the spread within the dwells,
 ///  "less": what "raw_nT" is the length of the readings less of}
-[[nodiscard]] nlohmann::json to_json(const criticism::tests::MeasuredPoints& points);
+[[nodiscard]] nlohmann::json to_json(const criticism::tests::MeasuredColumns& columns);
 
 }  // namespace mgtd::calib::report

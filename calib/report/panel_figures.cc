@@ -11,7 +11,7 @@
 #include "calib/report/figures/residual_figure.h"
 #include "calib/report/figures/scatter_figures.h"
 #include "calib/report/figures/sky_figures.h"
-#include "calib/report/point_columns.h"
+#include "calib/report/named_columns.h"
 #include "calib/sensor/channels.h"
 #include "calib/stats/probability.h"
 #include "proto/units.h"
@@ -21,7 +21,7 @@ namespace {
 
 using criticism::tests::Comparison;
 using criticism::tests::Dependence;
-using criticism::tests::PosePoints;
+using criticism::tests::ResidualColumns;
 
 constexpr double kFollows_log10_p = -3;
 constexpr std::size_t kMostColumns = 4;
@@ -54,14 +54,14 @@ std::vector<double> row_of(const Eigen::MatrixXd& m, Eigen::Index row) {
   return out;
 }
 
-std::vector<int> numbers_of(const PosePoints& p) {
+std::vector<int> numbers_of(const ResidualColumns& p) {
   std::vector<int> out;
   for (const Pose* pose : p.pose) out.push_back(pose->number);
   return out;
 }
 
 template <typename Value>
-std::vector<double> by_pose(const PosePoints& p, Value value) {
+std::vector<double> by_pose(const ResidualColumns& p, Value value) {
   std::vector<double> out;
   for (const Pose* pose : p.pose) {
     const std::optional<double> v = value(*pose);
@@ -80,8 +80,8 @@ int channel_index(const std::string& name, int channels) {
   return 0;
 }
 
-figures::Series series_of(const PosePoints& p, std::string name, std::vector<double> x, std::vector<double> y,
-                          std::size_t sensor, int left_out_channel) {
+figures::Series series_of(const ResidualColumns& p, std::string name, std::vector<double> x,
+                          std::vector<double> y, std::size_t sensor, int left_out_channel) {
   figures::Series out{.name = std::move(name),
                       .x = std::move(x),
                       .y = std::move(y),
@@ -101,7 +101,7 @@ figures::Figure channel_panel(const PanelModel& before, const PanelModel* after,
                               const std::vector<double>& x, const std::string& covariate) {
   const Dependence* const d = dependence(before.comparison, "whitened", covariate);
   const int c =
-      channel_index(d == nullptr ? "s1.x" : d->component, static_cast<int>(before.points.residual_nT.rows()));
+      channel_index(d == nullptr ? "s1.x" : d->component, static_cast<int>(before.left.residual_nT.rows()));
   const std::string name = sensor::channel_name(c);
   v.y_label = "residual of " + name + ", nT";
   v.what = fmt::format(
@@ -109,7 +109,7 @@ figures::Figure channel_panel(const PanelModel& before, const PanelModel* after,
   for (const PanelModel* model : {&before, after}) {
     if (model == nullptr) continue;
     figures::ResidualView& view = model == &before ? v.before : v.after;
-    view.series = {series_of(model->points, name, x, row_of(model->points.residual_nT, c),
+    view.series = {series_of(model->left, name, x, row_of(model->left.residual_nT, c),
                              static_cast<std::size_t>(c / 3), c)};
     view.p_text = p_of(*model, "whitened", covariate);
   }
@@ -119,15 +119,15 @@ figures::Figure channel_panel(const PanelModel& before, const PanelModel* after,
 
 /// Several rows of one matrix, each a series.
 figures::Figure rows_panel(const PanelModel& before, const PanelModel* after, figures::ResidualValues v,
-                           const std::vector<double>& x, const Eigen::MatrixXd PosePoints::*rows,
+                           const std::vector<double>& x, const Eigen::MatrixXd ResidualColumns::*rows,
                            const std::vector<std::string>& names, std::string_view channel,
                            const std::string& covariate) {
   for (const PanelModel* model : {&before, after}) {
     if (model == nullptr) continue;
     figures::ResidualView& view = model == &before ? v.before : v.after;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      std::vector<double> y = row_of(model->points.*rows, static_cast<Eigen::Index>(i));
-      if (any(y)) view.series.push_back(series_of(model->points, names[i], x, std::move(y), i, -1));
+      std::vector<double> y = row_of(model->left.*rows, static_cast<Eigen::Index>(i));
+      if (any(y)) view.series.push_back(series_of(model->left, names[i], x, std::move(y), i, -1));
     }
     view.p_text = p_of(*model, channel, covariate);
   }
@@ -136,23 +136,23 @@ figures::Figure rows_panel(const PanelModel& before, const PanelModel* after, fi
 }
 
 /// An array of many sensors has more of them than can be told apart in a figure.
-std::vector<std::string> shown_closures(const PosePoints& p) {
+std::vector<std::string> shown_closures(const ResidualColumns& p) {
   return {p.closure_names.begin(), p.closure_names.begin() + static_cast<std::ptrdiff_t>(std::min(
                                                                  p.closure_names.size(), kMostClosures))};
 }
 
 figures::Figure skies_of(const PanelModel& before, const PanelModel* after) {
-  const auto sensors = static_cast<std::size_t>(before.points.scalar_nT.rows());
+  const auto sensors = static_cast<std::size_t>(before.left.scalar_nT.rows());
   figures::SkiesValues v{
       .what = "|b| of each sensor less the field of the pose: blind to every error of angles."};
   for (std::size_t s = 0; s < sensors; ++s) {
     const auto row = static_cast<Eigen::Index>(s);
     figures::Sky sky{.sensor = fmt::format("s{}", s + 1)};
-    for (Eigen::Index k = 0; k < before.points.direction_S.cols(); ++k)
-      sky.directions.emplace_back(before.points.direction_S.block<3, 1>(3 * row, k));
-    sky.residual_nT = row_of(before.points.scalar_nT, row);
-    if (after != nullptr) sky.after_nT = row_of(after->points.scalar_nT, row);
-    sky.poses = numbers_of(before.points);
+    for (Eigen::Index k = 0; k < before.left.direction_S.cols(); ++k)
+      sky.directions.emplace_back(before.left.direction_S.block<3, 1>(3 * row, k));
+    sky.residual_nT = row_of(before.left.scalar_nT, row);
+    if (after != nullptr) sky.after_nT = row_of(after->left.scalar_nT, row);
+    sky.poses = numbers_of(before.left);
     v.skies.push_back(std::move(sky));
   }
   for (const auto& map : (after == nullptr ? before : *after).comparison.maps)
@@ -168,10 +168,10 @@ figures::QqView quantiles_of(const PanelModel& model) {
 /// The temperature of the sensor whose residual follows a temperature most; of any where that sensor has
 /// none.
 std::optional<std::size_t> sensor_of_temperature(const PanelModel& model) {
-  const auto sensors = static_cast<std::size_t>(model.points.scalar_nT.rows());
+  const auto sensors = static_cast<std::size_t>(model.left.scalar_nT.rows());
   std::vector<bool> moves;
   for (std::size_t s = 0; s < sensors; ++s)
-    moves.push_back(figures::spread_out(by_pose(model.points, [&](const Pose& p) { return p.T_degC[s]; })));
+    moves.push_back(figures::spread_out(by_pose(model.left, [&](const Pose& p) { return p.T_degC[s]; })));
   std::optional<std::size_t> out;
   double best = 1;
   std::string follower;
@@ -189,7 +189,7 @@ std::optional<std::size_t> sensor_of_temperature(const PanelModel& model) {
 }  // namespace
 
 std::vector<figures::Figure> panel_figures(const PanelModel& before, const PanelModel* after) {
-  const PosePoints& p = before.points;
+  const ResidualColumns& p = before.left;
   const auto sensors = static_cast<std::size_t>(p.scalar_nT.rows());
   std::vector<figures::Figure> out;
   const std::string after_title = "with the effects",
@@ -240,7 +240,8 @@ std::vector<figures::Figure> panel_figures(const PanelModel& before, const Panel
       before, after,
       values("residual-scalar", "Scalar residual against time", "time since the start, h", "|b| − F, nT",
              "|b| of each sensor less the field of the pose: blind to every error of angles."),
-      p.t_h, &PosePoints::scalar_nT, sensor_names(static_cast<Eigen::Index>(sensors)), "scalar", "time_h"));
+      p.t_h, &ResidualColumns::scalar_nT, sensor_names(static_cast<Eigen::Index>(sensors)), "scalar",
+      "time_h"));
   if (p.attitude_deg.array().isFinite().any() && before.comparison.fit->problem.has_angles) {
     auto v = values("residual-attitude", "Corrections of the table angles against azimuth",
                     "azimuth of the table, deg", "correction, deg",
@@ -248,7 +249,7 @@ std::vector<figures::Figure> panel_figures(const PanelModel& before, const Panel
                     "the sensors.");
     v.angle_deg = true;
     out.push_back(rows_panel(before, after, std::move(v), any(azimuth) ? azimuth : p.t_h,
-                             &PosePoints::attitude_deg, {"x", "y", "z"}, "attitude", "azimuth_deg"));
+                             &ResidualColumns::attitude_deg, {"x", "y", "z"}, "attitude", "azimuth_deg"));
   }
   if (p.closure_nT.rows() > 0)
     out.push_back(rows_panel(
@@ -257,7 +258,7 @@ std::vector<figures::Figure> panel_figures(const PanelModel& before, const Panel
                fmt::format("What no uniform field and no gradient can make: zero in any gradient ({} of {} "
                            "combinations).",
                            shown_closures(p).size(), p.closure_names.size())),
-        p.t_h, &PosePoints::closure_nT, shown_closures(p), "closure", "time_h"));
+        p.t_h, &ResidualColumns::closure_nT, shown_closures(p), "closure", "time_h"));
   std::size_t extra = 0;
   for (const auto& [name, column] : p.columns) {
     if (extra >= kMostColumns || !follows(before, "whitened", name) || !any(column)) continue;

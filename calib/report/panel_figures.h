@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "calib/criticism/tests/comparison.h"
-#include "calib/criticism/tests/pose_points.h"
+#include "calib/criticism/tests/residual_columns.h"
 #include "calib/report/figures/figure.h"
 
 /// panel_figures() draws nine panels of what a model leaves: against time, azimuth, temperature and the
@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostClosures = 4;
 /// One model of a run.
 struct PanelModel {
   const criticism::tests::Comparison& comparison;
-  const criticism::tests::PosePoints& points;
+  const criticism::tests::ResidualColumns& left;
 };
 
 /// `after`: the same poses with effects in the model, on equal axes; null: none were added. Panels whose

@@ -18,11 +18,12 @@
 namespace mgtd::calib::report {
 namespace {
 
-using criticism::tests::PosePoints;
+using criticism::tests::ResidualColumns;
 
 constexpr std::size_t kColumnLanes = 3;
 
-figures::Series time_series(const PosePoints& p, std::string name, std::vector<double> y, std::size_t tone) {
+figures::Series time_series(const ResidualColumns& p, std::string name, std::vector<double> y,
+                            std::size_t tone) {
   figures::Series out{.name = std::move(name),
                       .x = p.t_h,
                       .y = std::move(y),
@@ -57,7 +58,7 @@ int channel_of_time(const PanelModel& model) {
   for (const auto& channel : model.comparison.channels)
     for (const auto& d : channel.against)
       if (channel.name == "whitened" && d.covariate == "time_h") component = d.component;
-  for (int c = 0; c < static_cast<int>(model.points.residual_nT.rows()); ++c)
+  for (int c = 0; c < static_cast<int>(model.left.residual_nT.rows()); ++c)
     if (sensor::channel_name(c) == component) return c;
   return 0;
 }
@@ -72,15 +73,15 @@ std::string unit_of(const std::string& column) {
 figures::Figure coverage_of(const PanelModel& model) {
   figures::CoverageValues v;
   const Eigen::Matrix3d R_PS = model.comparison.fit->state.sensors.front().R_PS();
-  for (Eigen::Index k = 0; k < model.points.direction_S.cols(); ++k) {
-    const Eigen::Vector3d d = model.points.direction_S.block<3, 1>(0, k);
+  for (Eigen::Index k = 0; k < model.left.direction_S.cols(); ++k) {
+    const Eigen::Vector3d d = model.left.direction_S.block<3, 1>(0, k);
     if (d.allFinite()) v.measured.emplace_back(R_PS * d);
   }
   return figures::coverage_figure(v);
 }
 
 figures::Figure time_figure(const PanelModel& model) {
-  const PosePoints& p = model.points;
+  const ResidualColumns& p = model.left;
   const int c = channel_of_time(model);
   figures::LanesValues v{
       .name = "time",
@@ -140,7 +141,7 @@ figures::Figure time_figure(const PanelModel& model) {
 }
 
 std::optional<figures::Figure> closure_figure(const PanelModel& model) {
-  const PosePoints& p = model.points;
+  const ResidualColumns& p = model.left;
   if (p.closure_nT.rows() == 0) return std::nullopt;
   figures::LanesValues v{
       .name = "closure",

@@ -164,8 +164,8 @@ std::string alternatives_text(const criticism::search::Round& round) {
                        [](const criticism::tests::Alternative& a, const criticism::tests::Alternative& b) {
                          return a.p_right < b.p_right;
                        });
-  return fmt::format("Nearest rival: {}, told apart with probability {:.4g} at this size.", nearest->effect,
-                     nearest->p_right);
+  return fmt::format("Nearest alternative: {}, told apart with probability {:.4g} at this size.",
+                     nearest->effect, nearest->p_right);
 }
 
 std::string left_text(const std::vector<criticism::tests::MapScore>& maps) {

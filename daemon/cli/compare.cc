@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "calib/criticism/tests/comparison.h"
-#include "calib/criticism/tests/measured_points.h"
-#include "calib/criticism/tests/pose_points.h"
+#include "calib/criticism/tests/measured_columns.h"
+#include "calib/criticism/tests/residual_columns.h"
 #include "calib/report/comparison_report.h"
 #include "calib/report/figure_words.h"
 #include "calib/report/measured_report.h"
-#include "calib/report/pose_points_report.h"
+#include "calib/report/residual_columns_report.h"
 #include "calib/report/run_figures.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/figures_flag.h"
@@ -61,34 +61,34 @@ int run_compare(const Session& session, const CompareArguments& args) {
   });
   const auto refused = [&](const Error& error) {
     if (!args.poses) return print_error(session, error);
-    const auto measured = calib::criticism::tests::measured_points(source->table, *options);
+    const auto measured = calib::criticism::tests::measured_columns(source->table, *options);
     return print_error(session, error, calib::report::to_json(measured));
   };
   if (!comparison) return refused(comparison.error());
-  std::optional<calib::criticism::tests::PosePoints> points;
+  std::optional<calib::criticism::tests::ResidualColumns> left;
   if (args.poses || output->wanted() || args.figures.asked()) {
     auto found =
-        with_progress("compare", [&] { return calib::criticism::tests::pose_points(*comparison->fit); });
+        with_progress("compare", [&] { return calib::criticism::tests::residual_columns(*comparison->fit); });
     if (!found) return refused(found.error());
-    points = *std::move(found);
+    left = *std::move(found);
   }
   if (output->wanted()) {
-    if (auto written = output->write(calib::report::to_csv(*points), "what is left at each pose"); !written)
+    if (auto written = output->write(calib::report::to_csv(*left), "what is left at each pose"); !written)
       return print_error(session, written.error());
   }
   nlohmann::json out = calib::report::to_json(*comparison);
   if (auto drawn = hand_out(
           args.figures,
           [&] {
-            return figures_of({*comparison, *points});
+            return figures_of({*comparison, *left});
           },
           out);
       !drawn)
     return print_error(session, drawn.error());
   if (session.json) {
     if (args.poses) {
-      out["poses"] = calib::report::to_json(*points);
-      out.update(calib::report::panels_json({*comparison, *points}));
+      out["poses"] = calib::report::to_json(*left);
+      out.update(calib::report::panels_json({*comparison, *left}));
     }
     print_json(out);
   } else {

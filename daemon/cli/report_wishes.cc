@@ -11,7 +11,7 @@
 #include "calib/criticism/search/evidence.h"
 #include "calib/criticism/search/model_stage.h"
 #include "calib/criticism/search/stand_ins.h"
-#include "calib/criticism/tests/pose_points.h"
+#include "calib/criticism/tests/residual_columns.h"
 #include "calib/discovery/remaining_law.h"
 #include "calib/fit/joint/effect_impact.h"
 #include "calib/poses/pose_table.h"
@@ -35,7 +35,7 @@ namespace mgtd::daemon::cli {
 namespace {
 
 using calib::criticism::tests::Comparison;
-using calib::criticism::tests::PosePoints;
+using calib::criticism::tests::ResidualColumns;
 using calib::report::ReportContent;
 using Effects = std::vector<calib::effects::EffectPtr>;
 
@@ -51,7 +51,7 @@ calib::fit::FitOptions with_model(calib::fit::FitOptions options, const Effects&
 /// A model of the run with what it leaves at each pose.
 struct SeenModel {
   Comparison comparison;
-  PosePoints points;
+  ResidualColumns left;
 };
 
 Result<SeenModel> seen(const ReportContent& c, const calib::fit::FitOptions& asked, const Effects& effects) {
@@ -59,9 +59,9 @@ Result<SeenModel> seen(const ReportContent& c, const calib::fit::FitOptions& ask
                         ? Result<Comparison>(c.comparison)
                         : calib::criticism::tests::compare(c.table, with_model(asked, effects));
   if (!comparison) return tl::unexpected(comparison.error());
-  auto points = calib::criticism::tests::pose_points(*comparison->fit);
-  if (!points) return tl::unexpected(points.error());
-  return SeenModel{std::move(*comparison), std::move(*points)};
+  auto left = calib::criticism::tests::residual_columns(*comparison->fit);
+  if (!left) return tl::unexpected(left.error());
+  return SeenModel{std::move(*comparison), std::move(*left)};
 }
 
 /// Nine panels, with the effects that the search ended with beside the bare model, and how the run was
@@ -71,7 +71,7 @@ Result<void> draw_panels(const calib::fit::FitOptions& asked, std::optional<doub
   const Effects& whole = c.explained.model;
   const auto bare = seen(c, asked, {});
   if (!bare) return tl::unexpected(bare.error());
-  const calib::report::PanelModel before{bare->comparison, bare->points};
+  const calib::report::PanelModel before{bare->comparison, bare->left};
   std::optional<SeenModel> wide;
   if (!whole.empty()) {
     auto found = seen(c, asked, whole);
@@ -79,7 +79,7 @@ Result<void> draw_panels(const calib::fit::FitOptions& asked, std::optional<doub
     wide = *std::move(found);
   }
   const calib::report::PanelModel last =
-      wide ? calib::report::PanelModel{wide->comparison, wide->points} : before;
+      wide ? calib::report::PanelModel{wide->comparison, wide->left} : before;
   c.drawn.panels = calib::report::panel_figures(before, wide ? &last : nullptr);
   c.drawn.measured.push_back(calib::report::coverage_of(last));
   if (auto accuracy = calib::report::accuracy_of(c.table, with_model(asked, whole), wanted_nT_per_m))

@@ -57,23 +57,23 @@ Result<void> ask_at(const std::string& where, tests::ScoredFamily& family) {
 }
 
 Result<Left> left_of(const fit::joint::JointFit& fit, const tests::Criticism& c, double table_sd_rad,
-                     bool points) {
+                     bool by_pose) {
   Left out{.residual_nT = residual_of(fit),
            .noise_nT = fit.noise_nT(),
            .chi2 = tests::chi2_at_stated_noise(fit, c, table_sd_rad),
            .dof = c.dof,
            .maps = c.maps,
            .fit = std::make_shared<const fit::joint::JointFit>(fit)};
-  if (!points) return out;
-  auto found = tests::pose_points(*out.fit);
+  if (!by_pose) return out;
+  auto found = tests::residual_columns(*out.fit);
   if (!found) return tl::unexpected(found.error());
-  out.points = *std::move(found);
+  out.by_pose = *std::move(found);
   return out;
 }
 
 /// What the fit with the effect leaves.
 Result<Left> left_with(const PoseTable& table, fit::FitOptions options, const tests::ScoredFamily& family,
-                       double table_sd_rad, bool points) {
+                       double table_sd_rad, bool by_pose) {
   const tests::CandidateEffect& candidate = *family.candidate_effect;
   const std::size_t variant = family.winner().variant;
   auto effect = candidate.make && !candidate.dipole_at
@@ -87,7 +87,7 @@ Result<Left> left_with(const PoseTable& table, fit::FitOptions options, const te
   if (!fit) return tl::unexpected(fit.error());
   tests::Criticism c = tests::criticise(*fit, tests::CandidateEffects{}, options.seed);
   tests::look_at_maps(c);
-  return left_of(*fit, c, table_sd_rad, points);
+  return left_of(*fit, c, table_sd_rad, by_pose);
 }
 
 std::vector<Evidence::Tell> tells_of(const std::string& name) {
@@ -102,7 +102,7 @@ std::vector<Evidence::Tell> tells_of(const std::string& name) {
 }  // namespace
 
 Result<Evidence> evidence_of(const PoseTable& table, const ExplainOptions& options, const std::string& effect,
-                             const std::string& at, bool points) {
+                             const std::string& at, bool by_pose) {
   const std::string name(effects::family_name(effect));
   Evidence out;
   fit::FitOptions without = options.fit;
@@ -131,9 +131,9 @@ Result<Evidence> evidence_of(const PoseTable& table, const ExplainOptions& optio
   out.candidate.impact = tests::impact_of(judged.fit, family);
   out.tells = tells_of(name);
   const double table_sd_rad = judged.fit.table_sd_rad;
-  auto before = left_of(judged.fit, c, table_sd_rad, points);
+  auto before = left_of(judged.fit, c, table_sd_rad, by_pose);
   if (!before) return tl::unexpected(before.error());
-  auto after = left_with(table, without, family, table_sd_rad, points);
+  auto after = left_with(table, without, family, table_sd_rad, by_pose);
   if (!after) return tl::unexpected(after.error());
   out.before = *std::move(before);
   out.after = *std::move(after);

@@ -7,7 +7,7 @@
 #include "calib/criticism/search/explain_options.h"
 #include "calib/criticism/tests/added_variable.h"
 #include "calib/criticism/tests/candidate.h"
-#include "calib/criticism/tests/pose_points.h"
+#include "calib/criticism/tests/residual_columns.h"
 #include "calib/criticism/tests/residual_maps.h"
 
 /// Evidence holds what speaks for one effect that a model may lack: the poses that show it, what the fit
@@ -18,7 +18,7 @@ namespace mgtd::calib::criticism::search {
 struct Left {
   double residual_nT{0}, noise_nT{0}, chi2{0}, dof{0};
   std::vector<tests::MapScore> maps{};  ///< strongest first
-  std::optional<tests::PosePoints> points{};
+  std::optional<tests::ResidualColumns> by_pose{};
   std::shared_ptr<const fit::joint::JointFit> fit{};  ///< points into the pose table
 };
 
@@ -38,6 +38,6 @@ struct Evidence {
 /// is taken out of it first. Refuses an unknown effect, one that these poses cannot test, and a place that it
 /// cannot have.
 [[nodiscard]] Result<Evidence> evidence_of(const PoseTable& table, const ExplainOptions& options,
-                                           const std::string& effect, const std::string& at, bool points);
+                                           const std::string& effect, const std::string& at, bool by_pose);
 
 }  // namespace mgtd::calib::criticism::search

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 json reported(const PoseTable& table, std::optional<double> field_nT = {}) {
   fit::FitOptions options;
   options.field_nT = field_nT;
-  return to_json(criticism::tests::measured_points(table, options));
+  return to_json(criticism::tests::measured_columns(table, options));
 }
 
 json panel_named(const json& said, const std::string& name) {

@@ -18,7 +18,7 @@ using ::testing::Not;
 struct Seen {
   PoseTable table;
   criticism::tests::Comparison comparison;
-  criticism::tests::PosePoints points;
+  criticism::tests::ResidualColumns left;
 };
 
 /// On the heap: fits point to the poses.
@@ -28,9 +28,9 @@ std::unique_ptr<Seen> seen(PoseTable table) {
   auto compared = criticism::tests::compare(out->table, {});
   EXPECT_TRUE(compared);
   out->comparison = std::move(*compared);
-  auto points = criticism::tests::pose_points(*out->comparison.fit);
-  EXPECT_TRUE(points);
-  out->points = std::move(*points);
+  auto left = criticism::tests::residual_columns(*out->comparison.fit);
+  EXPECT_TRUE(left);
+  out->left = std::move(*left);
   return out;
 }
 
@@ -51,7 +51,7 @@ const figures::Figure& named(const std::vector<figures::Figure>& all, const std:
 
 TEST(Panels, AreNineAndTellWhatTheResidualFollows) {
   const auto run = seen(warming());
-  const std::vector<figures::Figure> all = panel_figures({run->comparison, run->points}, nullptr);
+  const std::vector<figures::Figure> all = panel_figures({run->comparison, run->left}, nullptr);
   std::set<std::string> names;
   for (const figures::Figure& f : all) EXPECT_TRUE(names.insert(f.name).second) << f.name << " twice";
   EXPECT_THAT(names,
@@ -67,28 +67,28 @@ TEST(Panels, AreNineAndTellWhatTheResidualFollows) {
 
 TEST(Panels, OfACleanRunDoNotStandOut) {
   const auto run = seen(testing::hidden_run({}, 6));
-  for (const figures::Figure& f : panel_figures({run->comparison, run->points}, nullptr))
+  for (const figures::Figure& f : panel_figures({run->comparison, run->left}, nullptr))
     EXPECT_FALSE(f.stands_out) << f.name;
-  const auto closure = closure_figure({run->comparison, run->points});
+  const auto closure = closure_figure({run->comparison, run->left});
   ASSERT_TRUE(closure);
   EXPECT_FALSE(closure->stands_out);
-  EXPECT_FALSE(coverage_of({run->comparison, run->points}).stands_out);
+  EXPECT_FALSE(coverage_of({run->comparison, run->left}).stands_out);
 }
 
 TEST(TimeFigure, TellsThatClosureLeavesItsLimit) {
   const auto run = seen(warming());
-  const auto closure = closure_figure({run->comparison, run->points});
+  const auto closure = closure_figure({run->comparison, run->left});
   ASSERT_TRUE(closure);
   EXPECT_TRUE(closure->stands_out);
   EXPECT_THAT(closure->good, HasSubstr("of 157"));
-  EXPECT_THAT(time_figure({run->comparison, run->points}).svg, HasSubstr("temperature"));
+  EXPECT_THAT(time_figure({run->comparison, run->left}).svg, HasSubstr("temperature"));
 }
 
 TEST(TimeFigure, APauseIsAGap) {
   PoseTable table = testing::hidden_run({}, 6);
   for (std::size_t k = 80; k < table.poses.size(); ++k) *table.poses[k].t_s += 3600;
   const auto run = seen(std::move(table));
-  const figures::Figure f = time_figure({run->comparison, run->points});
+  const figures::Figure f = time_figure({run->comparison, run->left});
   EXPECT_THAT(f.caption, HasSubstr("no pose"));
   EXPECT_THAT(f.svg, HasSubstr("hatch"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/criticism/tests/measured_points.h"
+#include "calib/criticism/tests/measured_columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +50,8 @@ std::map<std::string, std::vector<double>> extra_columns(std::span<const Pose* c
   return out;
 }
 
-MeasuredPoints measured_points(const PoseTable& table, const fit::FitOptions& options) {
-  MeasuredPoints out;
+MeasuredColumns measured_columns(const PoseTable& table, const fit::FitOptions& options) {
+  MeasuredColumns out;
   for (const Pose& pose : table.poses)
     if (pose.set != "check") out.pose.push_back(&pose);
   const poses::RunTime time = poses::RunTime::of(table);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/criticism/tests/pose_points.h"
+#include "calib/criticism/tests/residual_columns.h"
 
 #include <cmath>
 #include <limits>
 
 #include "calib/calibration/tensor.h"
-#include "calib/criticism/tests/measured_points.h"
+#include "calib/criticism/tests/measured_columns.h"
 #include "calib/criticism/tests/residual_fields.h"
 #include "calib/linear/cholesky.h"
 #include "calib/linear/propagation.h"
@@ -29,7 +29,7 @@ Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit) {
 }
 
 /// What was left out has no residual in units of noise, and what is made of it has none either.
-void hide_left_out(const fit::joint::JointFit& fit, PosePoints& out) {
+void hide_left_out(const fit::joint::JointFit& fit, ResidualColumns& out) {
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
     const fit::joint::JointPose& pose = fit.problem.poses[k];
     const auto at = static_cast<Eigen::Index>(k);
@@ -61,11 +61,11 @@ Eigen::VectorXd closure_chi2(const fit::joint::JointFit& fit, const Eigen::Matri
 
 }  // namespace
 
-Result<PosePoints> pose_points(const fit::joint::JointFit& fit) {
+Result<ResidualColumns> residual_columns(const fit::joint::JointFit& fit) {
   auto influence = fit::joint::pose_influences(fit);
   if (!influence) return tl::unexpected(influence.error());
   ResidualFields fields = residual_fields(fit);
-  PosePoints out;
+  ResidualColumns out;
   for (const fit::joint::JointPose& pose : fit.problem.poses) {
     out.pose.push_back(pose.pose);
     out.t_h.push_back(pose.t_h);

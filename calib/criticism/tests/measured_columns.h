@@ -9,13 +9,13 @@
 #include "calib/fit/fit_options.h"
 #include "proto/pose.h"
 
-/// MeasuredPoints holds what was measured at each pose, column by column. It needs no fit, so it exists where
-/// a fit is refused too.
+/// MeasuredColumns holds what was measured at each pose, column by column. It needs no fit, so it exists
+/// where a fit is refused too.
 namespace mgtd::calib::criticism::tests {
 
 /// Columns of matrices are poses in the order of the table, without those of the set "check", as a fit has
 /// them. NaN: not measured.
-struct MeasuredPoints {
+struct MeasuredColumns {
   std::vector<const Pose*> pose{};  ///< of the pose table
   std::vector<double> t_h{};
   std::map<std::string, std::vector<double>> columns{};  ///< every extra numeric column
@@ -29,7 +29,7 @@ struct MeasuredPoints {
 };
 
 /// `table` must outlive the result. Of `options` only the field that was given is used.
-[[nodiscard]] MeasuredPoints measured_points(const PoseTable& table, const fit::FitOptions& options);
+[[nodiscard]] MeasuredColumns measured_columns(const PoseTable& table, const fit::FitOptions& options);
 
 /// Every extra numeric column of these poses, NaN where a pose has none.
 [[nodiscard]] std::map<std::string, std::vector<double>> extra_columns(std::span<const Pose* const> poses);

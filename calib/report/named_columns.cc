@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/report/point_columns.h"
+#include "calib/report/named_columns.h"
 
 #include <fmt/format.h>
 
@@ -32,21 +32,21 @@ std::vector<std::string> sensor_names(Eigen::Index sensors) {
 }
 
 void add_rows(const std::string& group, const std::vector<std::string>& names, const Eigen::MatrixXd& rows,
-              std::vector<PointColumn>& out) {
+              std::vector<NamedColumn>& out) {
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    PointColumn column{group, names[static_cast<std::size_t>(i)], {}};
+    NamedColumn column{group, names[static_cast<std::size_t>(i)], {}};
     for (Eigen::Index k = 0; k < rows.cols(); ++k) column.values.push_back(rows(i, k));
     out.push_back(std::move(column));
   }
 }
 
-std::vector<PointColumn> circumstance_columns(std::span<const Pose* const> poses,
+std::vector<NamedColumn> circumstance_columns(std::span<const Pose* const> poses,
                                               const std::vector<double>& t_h,
                                               const std::map<std::string, std::vector<double>>& columns,
                                               Eigen::Index sensors) {
-  std::vector<PointColumn> out;
+  std::vector<NamedColumn> out;
   const auto add = [&](std::string group, std::string name, auto&& value) {
-    PointColumn column{std::move(group), std::move(name), {}};
+    NamedColumn column{std::move(group), std::move(name), {}};
     for (const Pose* pose : poses) column.values.push_back(value(*pose));
     out.push_back(std::move(column));
   };
@@ -75,8 +75,8 @@ std::vector<PointColumn> circumstance_columns(std::span<const Pose* const> poses
   return out;
 }
 
-void put_columns(const std::vector<PointColumn>& columns, nlohmann::json& out) {
-  for (const PointColumn& column : columns) {
+void put_columns(const std::vector<NamedColumn>& columns, nlohmann::json& out) {
+  for (const NamedColumn& column : columns) {
     nlohmann::json values = nlohmann::json::array();
     for (const double value : column.values) values.push_back(number_or_null(value));
     if (column.name.empty()) {

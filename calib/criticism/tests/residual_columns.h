@@ -7,11 +7,11 @@
 
 #include "calib/fit/joint/pose_influence.h"
 
-/// PosePoints holds what a fit leaves at each pose, column by column, for plots and for a look at single
+/// ResidualColumns holds what a fit leaves at each pose, column by column, for plots and for a look at single
 /// poses. Columns of matrices are poses in the order of the fit. NaN: not known, or left out by the fit.
 namespace mgtd::calib::criticism::tests {
 
-struct PosePoints {
+struct ResidualColumns {
   std::vector<const Pose*> pose{};  ///< of the pose table that was fitted
   std::vector<double> t_h{};
   std::map<std::string, std::vector<double>> columns{};  ///< every extra numeric column
@@ -27,6 +27,6 @@ struct PosePoints {
   std::vector<fit::joint::PoseInfluence> influence{};
 };
 
-[[nodiscard]] Result<PosePoints> pose_points(const fit::joint::JointFit& fit);
+[[nodiscard]] Result<ResidualColumns> residual_columns(const fit::joint::JointFit& fit);
 
 }  // namespace mgtd::calib::criticism::tests

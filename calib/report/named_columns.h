@@ -14,7 +14,7 @@ namespace mgtd::calib::report {
 
 /// A column: its group ("residual_nT"), its name in the group ("s1.x"; empty: the group is one column), and
 /// its values.
-struct PointColumn {
+struct NamedColumn {
   std::string group, name;
   std::vector<double> values;
 };
@@ -26,14 +26,14 @@ struct PointColumn {
 
 /// One column for each row of a matrix.
 void add_rows(const std::string& group, const std::vector<std::string>& names, const Eigen::MatrixXd& rows,
-              std::vector<PointColumn>& out);
+              std::vector<NamedColumn>& out);
 
 /// What stands beside the readings of a pose: mount, sense, time, angles, temperatures, extra columns.
-[[nodiscard]] std::vector<PointColumn> circumstance_columns(
+[[nodiscard]] std::vector<NamedColumn> circumstance_columns(
     std::span<const Pose* const> poses, const std::vector<double>& t_h,
     const std::map<std::string, std::vector<double>>& columns, Eigen::Index sensors);
 
 /// {"t_h": [..], "residual_nT": {"s1.x": [..], ..}}; what is not finite is null.
-void put_columns(const std::vector<PointColumn>& columns, nlohmann::json& out);
+void put_columns(const std::vector<NamedColumn>& columns, nlohmann::json& out);
 
 }  // namespace mgtd::calib::report

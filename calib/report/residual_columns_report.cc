@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/report/pose_points_report.h"
+#include "calib/report/residual_columns_report.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,17 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "calib/report/point_columns.h"
+#include "calib/report/named_columns.h"
 
 namespace mgtd::calib::report {
 namespace {
 
-using criticism::tests::PosePoints;
+using criticism::tests::ResidualColumns;
 using nlohmann::json;
 
-std::vector<PointColumn> columns_of(const PosePoints& p) {
+std::vector<NamedColumn> columns_of(const ResidualColumns& p) {
   const Eigen::Index sensors = p.scalar_nT.rows();
-  std::vector<PointColumn> out = circumstance_columns(p.pose, p.t_h, p.columns, sensors);
+  std::vector<NamedColumn> out = circumstance_columns(p.pose, p.t_h, p.columns, sensors);
   const std::vector<std::string> channels = channel_names(p.residual_nT.rows()), axes{"x", "y", "z"};
   add_rows("residual_nT", channels, p.residual_nT, out);
   add_rows("whitened", channels, p.whitened, out);
@@ -27,7 +27,7 @@ std::vector<PointColumn> columns_of(const PosePoints& p) {
   add_rows("attitude_deg", axes, p.attitude_deg, out);
   add_rows("closure", p.closure_names, p.closure_nT, out);
   add_rows("direction_S", channels, p.direction_S, out);
-  PointColumn leverage{"leverage", "", {}}, shift{"tensor_shift_nT_per_m", "", {}};
+  NamedColumn leverage{"leverage", "", {}}, shift{"tensor_shift_nT_per_m", "", {}};
   for (const fit::joint::PoseInfluence& influence : p.influence) {
     leverage.values.push_back(influence.leverage);
     shift.values.push_back(influence.tensor_shift_nT_per_m);
@@ -50,7 +50,7 @@ std::string csv_cell(const std::string& text) {
 
 }  // namespace
 
-json to_json(const PosePoints& p) {
+json to_json(const ResidualColumns& p) {
   json number = json::array(), set = json::array(), component = json::array();
   for (const Pose* pose : p.pose) {
     number.push_back(pose->number);
@@ -65,10 +65,10 @@ json to_json(const PosePoints& p) {
   return out;
 }
 
-std::string to_csv(const PosePoints& p) {
-  const std::vector<PointColumn> columns = columns_of(p);
+std::string to_csv(const ResidualColumns& p) {
+  const std::vector<NamedColumn> columns = columns_of(p);
   std::string out = "pose,set,left_out,tensor_shift_component";
-  for (const PointColumn& c : columns) {
+  for (const NamedColumn& c : columns) {
     const std::string name = c.name.empty()         ? c.group
                              : c.group == "columns" ? c.name
                                                     : fmt::format("{} {}", c.group, c.name);
@@ -78,7 +78,7 @@ std::string to_csv(const PosePoints& p) {
   for (std::size_t k = 0; k < p.pose.size(); ++k) {
     out += fmt::format("{},{},{},{}", p.pose[k]->number, csv_cell(p.pose[k]->set),
                        fmt::join(p.left_out[k], " "), p.influence[k].component);
-    for (const PointColumn& c : columns)
+    for (const NamedColumn& c : columns)
       out += std::isfinite(c.values[k]) ? fmt::format(",{}", c.values[k]) : ",";
     out += "\n";
   }
