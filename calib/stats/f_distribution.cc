@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/stats/f_distribution.h"
 
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
+#include "calib/stats/boost_policy.h"
 #include "calib/stats/chi_square.h"
 #include "calib/stats/log_gamma.h"
 
@@ -30,20 +32,28 @@ double fraction(double a, double b, double x) {
   return h;
 }
 
-double log_front(double a, double b, double x) {
-  return log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) + b * std::log1p(-x);
+/// ln I_x(a, b), for the same x.
+double log_beta_ratio(double a, double b, double x) {
+  return log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) + b * std::log1p(-x) +
+         std::log(fraction(a, b, x) / a);
 }
 
 }  // namespace
 
 double f_log10_p(double f, double k, double nu) {
   if (!(f > 0) || !(k > 0)) return 0;
+  if (std::isnan(nu)) return nu;
   if (std::isinf(nu)) return chi_square_log10_p(k * f, k);
-  const double a = nu / 2, b = k / 2, x = nu / (nu + k * f);
-  if (x < (a + 1) / (a + b + 2))
-    return (log_front(a, b, x) + std::log(fraction(a, b, x) / a)) / std::log(10.0);
-  const double lower = std::exp(log_front(b, a, 1 - x)) * fraction(b, a, 1 - x) / b;
-  return std::log1p(-lower) / std::log(10.0);
+  const double a = nu / 2, b = k / 2;
+  // I_x(a, b) = 1 - I_y(b, a), y = 1 - x: the smaller of the two keeps its digits.
+  const double x = 1 / (1 + k * f / nu), y = 1 / (1 + nu / (k * f));
+  const double p =
+      x < y ? boost::math::ibeta(a, b, x, BoostPolicy()) : boost::math::ibetac(b, a, y, BoostPolicy());
+  if (p < kLeastBoostTail) return log_beta_ratio(a, b, x) / std::log(10.0);
+  if (p <= 0.5) return std::log10(p);
+  const double below =
+      x < y ? boost::math::ibetac(a, b, x, BoostPolicy()) : boost::math::ibeta(b, a, y, BoostPolicy());
+  return std::log1p(-below) / std::log(10.0);
 }
 
 }  // namespace mgtd::calib::stats

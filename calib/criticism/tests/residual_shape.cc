@@ -2,13 +2,15 @@
 #include "calib/criticism/tests/residual_shape.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/beta.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "calib/criticism/tests/whitener.h"
 #include "calib/fit/joint/pose_residuals.h"
-#include "calib/stats/f_distribution.h"
+#include "calib/stats/boost_policy.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -30,17 +32,9 @@ Eigen::MatrixXd own_units(const fit::joint::JointFit& fit) {
   return out;
 }
 
-double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
-/// x with P(Beta(a, b) > x) = p; Beta(a, b) > x is F(2a, 2b) > b x / (a (1 - x)).
+/// x with P(Beta(a, b) > x) = p.
 double beta_upper(double a, double b, double p) {
-  double low = 0, high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double x = (low + high) / 2;
-    const bool more = stats::f_log10_p(b * x / (a * (1 - x)), 2 * a, 2 * b) > std::log10(p);
-    (more ? low : high) = x;
-  }
-  return (low + high) / 2;
+  return boost::math::ibetac_inv(a, b, p, stats::BoostPolicy());
 }
 
 /// Chance of each order statistic to leave the envelope on one side.
@@ -54,12 +48,7 @@ double local_level(std::size_t n) {
 }  // namespace
 
 double normal_quantile(double p) {
-  double low = -40, high = 40;
-  for (int i = 0; i < 80; ++i) {
-    const double z = (low + high) / 2;
-    (normal_below(z) < p ? low : high) = z;
-  }
-  return (low + high) / 2;
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p, stats::BoostPolicy());
 }
 
 ResidualQuantiles residual_quantiles(const fit::joint::JointFit& fit) {

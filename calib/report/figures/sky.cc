@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace mgtd::calib::report::figures {
@@ -11,18 +13,16 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// θ of 2θ + sin 2θ = π sin φ, by Newton's method with the poles, where its slope vanishes, apart.
+/// θ of 2θ + sin 2θ = π sin φ. At the poles its slope vanishes.
 double auxiliary_angle(double latitude_rad) {
+  constexpr double kPole = kPi / 2;
+  if (!(std::abs(latitude_rad) < kPole - 1e-9)) return std::clamp(latitude_rad, -kPole, kPole);
   const double target = kPi * std::sin(latitude_rad);
-  if (std::abs(latitude_rad) > kPi / 2 - 1e-9) return std::copysign(kPi / 2, latitude_rad);
-  double theta = latitude_rad;
-  for (int i = 0; i < 60; ++i) {
-    const double slope = 2 + 2 * std::cos(2 * theta);
-    const double step = (2 * theta + std::sin(2 * theta) - target) / std::max(slope, 1e-12);
-    theta = std::clamp(theta - step, -kPi / 2, kPi / 2);
-    if (std::abs(step) < 1e-13) break;
-  }
-  return theta;
+  const auto above = [&](double theta) { return 2 * theta + std::sin(2 * theta) - target; };
+  const auto near = [](double low, double high) { return high - low < 1e-13; };
+  std::uintmax_t most = 60;
+  const auto [low, high] = boost::math::tools::toms748_solve(above, -kPole, kPole, near, most);
+  return 0.5 * (low + high);
 }
 
 Eigen::Vector3d unit_at(double longitude_rad, double sin_latitude) {

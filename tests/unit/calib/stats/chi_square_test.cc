@@ -45,6 +45,23 @@ TEST(ChiSquare, LogarithmGoesOnWhereBoostsProbabilityIsZero) {
   EXPECT_NEAR(chi_square_log10_p(4000, 12), -854.1619085236, 1e-8);
 }
 
+/// Where Boost.Math's probability ends, the continued fraction goes on without a step.
+TEST(ChiSquare, LogarithmIsSmoothWhereTheContinuedFractionTakesOver) {
+  for (const double dof : {1.0, 12.0, 150.0}) {
+    const double x = chi_square_limit(1e-290, dof), h = x * 1e-6;
+    const double left = chi_square_log10_p(x - h, dof), here = chi_square_log10_p(x, dof),
+                 right = chi_square_log10_p(x + h, dof);
+    EXPECT_NEAR(here, -290, 1e-9);
+    EXPECT_NEAR((right - 2 * here + left) / (right - left), 0, 1e-5) << dof;
+  }
+}
+
+TEST(ChiSquare, NothingIsSaidOfWhatIsNotANumber) {
+  EXPECT_TRUE(std::isnan(chi_square_p(std::nan(""), 3)));
+  EXPECT_TRUE(std::isnan(chi_square_log10_p(std::nan(""), 3)));
+  EXPECT_EQ(chi_square_p(1e12, 3), 0);
+}
+
 TEST(ChiSquare, LogarithmDoesNotUnderflow) {
   EXPECT_NEAR(chi_square_log10_p(1e5, 2), -5e4 / std::log(10.0), 1e-6);
   EXPECT_EQ(chi_square_p(0, 5), 1);

@@ -6,6 +6,7 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "calib/stats/chi_square.h"
 
@@ -46,6 +47,25 @@ TEST(FDistribution, WithoutALimitToTheNoiseIsTheChiSquare) {
   EXPECT_DOUBLE_EQ(f_log10_p(3, 12, inf), chi_square_log10_p(36, 12));
   EXPECT_NEAR(f_log10_p(3, 12, 1e7), chi_square_log10_p(36, 12), 1e-4);
   EXPECT_EQ(f_log10_p(-1, 3, 5), 0);
+  EXPECT_EQ(f_log10_p(inf, 3, 5), -inf);
+  EXPECT_TRUE(std::isnan(f_log10_p(1, 3, std::nan(""))));
+}
+
+/// Neither 1 - x of an x near one nor a difference of large logarithms of the gamma function has them.
+TEST(FDistribution, KeepsItsDigitsWhereTheNoiseIsKnownWell) {
+  for (const double f : {0.5, 3.0, 20.0})
+    EXPECT_NEAR(f_log10_p(f, 12, 1e12), chi_square_log10_p(12 * f, 12), 1e-8) << f;
+}
+
+/// P(|t| > 1e6) with one degree of freedom is 2/pi of 1e-6.
+TEST(FDistribution, KeepsItsDigitsFarOut) {
+  EXPECT_NEAR(f_log10_p(1e12, 1, 1), std::log10(2e-6 / std::numbers::pi), 1e-11);
+}
+
+/// P(|t| < 1e-6) with 40 degrees of freedom is 2e-6 of the density at zero.
+TEST(FDistribution, KeepsItsDigitsNearOne) {
+  EXPECT_NEAR(f_log10_p(1e-12, 1, 40) / -3.443582459417e-07, 1, 1e-9);
+  EXPECT_NEAR(f_log10_p(0.5, 300, 900) / -1.2281e-12, 1, 1e-4);
 }
 
 }  // namespace
