@@ -5,8 +5,8 @@
 
 #include "proto/error.h"
 
-/// These are the arguments of calibrations.show, calibrations.accept, calibrations.reject and
-/// calibrations.import.
+/// These functions read the arguments of the control commands calibrations.show, calibrations.accept,
+/// calibrations.reject and calibrations.import.
 namespace mgtd {
 
 /// {"id":".."}; refuses an empty one.

@@ -8,8 +8,8 @@
 
 #include "proto/error.h"
 
-/// This checks JSON from a file before anything is read out of it, and says in our words and with its place
-/// what is wrong. The library's own messages do not get to an operator.
+/// These functions check JSON from a file before anything is read out of it, and say in our words and with
+/// its place what is wrong. The library's own messages do not get to an operator.
 namespace mgtd {
 
 /// The value, or null.

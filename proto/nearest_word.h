@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// This guesses what a mistyped word was meant to be.
+/// nearest_word() guesses what a mistyped word was meant to be.
 namespace mgtd {
 
 /// The word nearest to `wrong` by insertions, deletions and substitutions, if no more than three of them

@@ -4,7 +4,8 @@
 #include <optional>
 #include <string_view>
 
-/// This reads numbers as instruments write them, in every locale alike; the whole text must be the number.
+/// parse_number() and parse_integer() read numbers as instruments write them, in every locale alike; the
+/// whole text must be the number.
 namespace mgtd {
 
 /// Accepts an optional sign ('+' too, which from_chars refuses); refuses nan, inf, blanks and trailing text.

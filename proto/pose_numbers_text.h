@@ -5,7 +5,7 @@
 
 namespace mgtd {
 
-/// Numbers of poses as an operator writes them: "3,7-9".
+/// pose_numbers_text() writes numbers of poses as an operator writes them: "3,7-9".
 [[nodiscard]] std::string pose_numbers_text(const std::set<int>& numbers);
 
 }  // namespace mgtd

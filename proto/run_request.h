@@ -9,7 +9,7 @@
 #include "proto/error.h"
 #include "proto/requested_pose.h"
 
-/// These are the arguments of run.start and run.dry-run.
+/// A RunRequest holds the arguments of the control commands run.start and run.dry-run.
 namespace mgtd {
 
 /// What the operator wants otherwise than the configuration says.

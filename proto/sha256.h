@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-/// This computes the SHA-256 (FIPS 180-4) of a text, as 64 lower-case hex digits. It names data and
+/// sha256_hex() computes the SHA-256 (FIPS 180-4) of a text, as 64 lower-case hex digits. It names data and
 /// calibrations; it guards no secret. OpenSSL computes it.
 namespace mgtd {
 

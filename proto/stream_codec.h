@@ -10,7 +10,8 @@
 #include "proto/sensors_report.h"
 #include "proto/status_report.h"
 
-/// This writes the lines of the live stream but TENSOR (tensor_encoder.h): one JSON object each, no line end.
+/// encode() writes every line of the live stream but TENSOR (tensor_encoder.h), as one JSON object without
+/// the line end.
 ///
 ///   {"class":"HELLO","protocol":{"major":1,"minor":2},"rig":"..","software":"mgtd 0.1.0","array":{...}}
 ///   {"class":"GAP","from_seq":..,"to_seq":..,"why":".."}

@@ -9,7 +9,7 @@
 #include "proto/input_value.h"
 #include "proto/tensor.h"
 
-/// This writes a TensorSample as one TENSOR line of the live stream, without the line end:
+/// A TensorEncoder writes a TensorSample as one TENSOR line of the live stream, without the line end:
 ///
 ///   {"class":"TENSOR","seq":123,"t":"2026-11-21T10:00:00.123456Z","t_ns":1795255200123456000,
 ///    "frame":"platform","cal":"c0123456789ab","b_nT":[..3..],"f_nT":..,

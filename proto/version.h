@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The version of the programs, as `--version` prints it and as files and messages carry it. It is compiled
-/// into one small file, so a new version compiles that file again and links, and nothing else.
+/// version() is the version of the programs, as `--version` prints it and as files and messages carry it. It
+/// is compiled into one small file, so a new version compiles that file again and links, and nothing else.
 #pragma once
 
 #include <string>
