@@ -2,10 +2,10 @@
 #pragma once
 #include "proto/time.h"
 
-/// This is the one place that reads the host's clocks. With a speed-up, time runs that much faster than the
-/// host's, for runs against a simulated rig that was started with the same factor: a ten-second dwell then
-/// takes 10 s / speed_up of the operator's time and everything downstream, dwell lengths, rates and stream
-/// times, stays as on a real rig.
+/// A Clock reads the clocks of the host, and is the only place that does. With a speed-up, time runs that
+/// much faster than the host's, for runs against a simulated rig that was started with the same factor: a
+/// ten-second dwell then takes 10 s / speed_up of the operator's time and everything downstream, dwell
+/// lengths, rates and stream times, stays as on a real rig.
 namespace mgtd::drivers {
 
 class Clock {

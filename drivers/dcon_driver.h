@@ -13,7 +13,7 @@
 #include "drivers/line_device.h"
 #include "drivers/settings.h"
 
-/// This driver asks an analogue input module for its channels at intervals: currents, voltages and
+/// A DconDriver asks an analogue input module for its channels at intervals: currents, voltages and
 /// temperatures that act on the rig.
 ///
 ///   port, baud = 9600

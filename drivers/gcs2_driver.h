@@ -11,7 +11,7 @@
 #include "drivers/line_device.h"
 #include "drivers/query_queue.h"
 
-/// This driver runs a turntable of one to three axes through a GCS 2 controller.
+/// A Gcs2Driver runs a turntable of one to three axes through a GCS 2 controller.
 ///
 ///   opening  stop (18), identity, axes checked, travel read, velocity set, servo off; then live
 ///   home     per axis not yet referenced: servo on, FRF, 07 until ready, FRF?

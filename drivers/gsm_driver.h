@@ -12,7 +12,7 @@
 #include "drivers/settings.h"
 #include "proto/error.h"
 
-/// This driver of the scalar reference listens to a GSM-90 or GSM-19, after sending the set-up strings of the
+/// A GsmDriver listens to a GSM-90 or GSM-19, the scalar reference, after sending the set-up strings of the
 /// configuration, if there are any.
 ///
 ///   port, baud = 115200

@@ -10,8 +10,8 @@
 #include "drivers/device.h"
 #include "drivers/framer.h"
 
-/// Every device that speaks in lines shares this: framing, the count of bytes, the time of a line, its state,
-/// and the request for a fresh port when nothing at all has come for a while.
+/// A LineBased device speaks in lines. The base holds what such devices share: framing, the count of bytes,
+/// the time of a line, its state, and the request for a fresh port when nothing at all has come for a while.
 ///
 /// A line that shares a chunk with later bytes arrived at least (bytes behind it) * 10 bit / baud before the
 /// chunk's last byte; its stamp is moved back by that, which tightens the upper bound the stamp is.

@@ -7,8 +7,8 @@
 #include "proto/health.h"
 #include "proto/reading.h"
 
-/// This tracks the state of a link to a device, from what its port and the device itself report. No port, no
-/// clock: what happened comes in, what to show and how long to wait come out.
+/// A LinkStatus tracks the state of a link to a device, from what its port and the device itself report. No
+/// port, no clock: what happened comes in, what to show and how long to wait come out.
 ///
 ///     ABSENT   no such port                     OPENING  it is there and cannot be opened: why
 ///     GONE     it was there and went away       PROBING, LIVE, SILENT, FAILED  the device's own words

@@ -13,7 +13,7 @@
 #include "drivers/obsdaq_start.h"
 #include "drivers/rate_watch.h"
 
-/// This driver starts and verifies one fluxgate behind an ObsDAQ and keeps it streaming.
+/// An ObsdaqDriver starts and verifies one fluxgate behind an ObsDAQ and keeps it streaming.
 ///
 ///   probing  as obsdaq_start.h: briskly, and patiently when that leads to nothing
 ///   live     FieldReading per line; once a second TemperatureReading and what its inputs are used for

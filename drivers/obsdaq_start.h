@@ -3,9 +3,9 @@
 #include "drivers/dialogue.h"
 #include "drivers/obsdaq_settings.h"
 
-/// This conversation brings an ObsDAQ from any state into streaming with the host's settings: quick stop,
-/// silence, identity, serial number, trigger off, three channels, trigger, start; each echo checked. Behind a
-/// PalmAcq, first into its transparent mode, at last into forwarding.
+/// start_up() is the conversation that brings an ObsDAQ from any state into streaming with the host's
+/// settings: quick stop, silence, identity, serial number, trigger off, three channels, trigger, start; each
+/// echo checked. Behind a PalmAcq, first into its transparent mode, at last into forwarding.
 ///
 /// What a device does not answer needs a pause, and how long nobody has written down: the scripts of the
 /// MARTAS project wait for one line of reply or 2 s. So the pauses are short at first, and what they lead to
