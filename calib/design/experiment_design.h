@@ -15,8 +15,8 @@
 #include "proto/tensor.h"
 #include "proto/units.h"
 
-/// Predicts what a list of poses would yield, before anything is measured: how well the calibration would be
-/// known, and which missing effects would be seen and told apart (experiment_power.h).
+/// evaluate_design() predicts what a list of poses would yield, before anything is measured: how well the
+/// calibration would be known, and which missing effects would be seen and told apart (experiment_power.h).
 ///
 /// The information of the joint fit is computed at the listed table angles and inverted (Cramer-Rao bound).
 /// Readings play no part, so the answer holds for every rig similar to the given one. The noise and the

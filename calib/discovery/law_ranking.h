@@ -5,8 +5,8 @@
 
 #include "calib/discovery/law_search.h"
 
-/// Ranks laws by their evidence, never by their chi-square or by a probability of chance: a formula that can
-/// bend more falls further, and a search finds the one that bends best.
+/// These functions rank laws by their evidence, never by their chi-square or by a probability of chance: a
+/// formula that can bend more falls further, and a search finds the one that bends best.
 ///
 ///     q_i     = S_i - k_i ln(1 + S_i)                              a price for each coefficient
 ///     2 ln E  = 2 ln( mean over i of exp(q_i / 2) )                i: values of the inner number

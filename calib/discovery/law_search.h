@@ -6,7 +6,7 @@
 #include "calib/discovery/channel_sums.h"
 #include "calib/discovery/formula_products.h"
 
-/// Scores every formula of a grammar at every place where it can act.
+/// A LawSearch scores every formula of a grammar at every place where it can act.
 ///
 /// With z the projected columns of a formula at a place, U an orthonormal basis of their span and r the
 /// residual, S = |U' r|^2 is the fall of chi-square that the formula would bring, chi-square with as many

@@ -3,8 +3,8 @@
 #include "calib/effects/effect.h"
 #include "calib/effects/where.h"
 
-/// Decides whether two effects would be the same law on a common axis: a model holds a law once on an axis,
-/// but the same law may act on several axes, each with a coefficient of its own.
+/// same_law_on_a_common_axis() decides whether two effects would be the same law on a common axis: a model
+/// holds a law once on an axis, but the same law may act on several axes, each with a coefficient of its own.
 namespace mgtd::calib::effects {
 
 [[nodiscard]] bool share_an_axis(const Where& a, const Where& b);

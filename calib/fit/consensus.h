@@ -6,8 +6,8 @@
 
 #include "calib/calibration/tensor.h"
 
-/// Finds the poses that agree with each other, without a start and without knowing the noise, while up to two
-/// in five are wrong by any amount.
+/// agreeing_poses() finds the poses that agree with each other, without a start and without knowing the
+/// noise, while up to two in five are wrong by any amount.
 ///
 /// Where the four sensors see one field, the twelve readings of a pose are an affine map of its three
 /// components: all poses lie in one three-dimensional plane, y_k = m + U x_k, and there on one ellipsoid,

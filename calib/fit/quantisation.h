@@ -3,7 +3,8 @@
 #include "calib/calibration/calibration.h"
 #include "proto/pose.h"
 
-/// Finds the quantisation step of the readings, that of the digitiser or of the table, from their own grid.
+/// quantisation_of() finds the quantisation step of the readings, that of the digitiser or of the table, from
+/// their own grid.
 ///
 /// Where the noise of a sample is small against the step q, all samples of a dwell are the same number, and
 /// their mean is off by up to q/2 however many there are: the spread within the dwell says zero. Readings of

@@ -3,8 +3,8 @@
 #include "proto/error.h"
 #include "proto/pose.h"
 
-/// Joins two runs of one rig into one pose table, so that a second measurement is judged together with the
-/// first.
+/// joined() joins two runs of one rig into one pose table, so that a second measurement is judged together
+/// with the first.
 ///
 /// Times become seconds since the start of the earlier run; pose numbers of the later run continue those of
 /// the earlier; everything else stays. t_utc decides which run is earlier. Without it in either run, t_s of

@@ -6,7 +6,8 @@
 #include "calib/calibration/calibration.h"
 #include "calib/report/seen_width.h"
 
-/// This presents a calibration to a person. `width` is the number of columns that a table may have.
+/// These functions present a calibration to a person as text. `width` is the number of columns that a table
+/// may have.
 namespace mgtd::calib::report {
 
 /// Everything a calibration says of itself: what made it, of which poses, what it leaves, the parameters, the

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-/// This lays out a table whose columns may be too many for one line: as many of them as fit stand beside each
-/// other, the others in a further block below, which repeats the names of the rows.
+/// column_blocks() lays out a table whose columns may be too many for one line: as many of them as fit stand
+/// beside each other, the others in a further block below, which repeats the names of the rows.
 namespace mgtd::calib::report {
 
 struct NamedRow {

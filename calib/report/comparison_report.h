@@ -10,7 +10,7 @@
 
 namespace mgtd::calib::report {
 
-/// Writes the comparison of model and measurement as JSON (mgt.compare/1).
+/// to_json() writes the comparison of model and measurement as JSON (mgt.compare/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::Comparison& comparison);
 /// Which covariates stand for others, a sentence for each.
 [[nodiscard]] std::vector<std::string> alike_text(const criticism::tests::Comparison& comparison);

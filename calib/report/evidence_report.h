@@ -7,7 +7,7 @@
 
 namespace mgtd::calib::report {
 
-/// Writes the evidence for one effect as JSON (mgt.why/1).
+/// to_json() writes the evidence for one effect as JSON (mgt.why/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::search::Evidence& evidence);
 /// For a person, in whole lines that the caller fits to the terminal: how far beyond chance, the poses that
 /// carry it, without and with the effect map by map, what else it could be and what would tell.

@@ -6,7 +6,7 @@
 
 namespace mgtd::calib::report {
 
-/// Writes what explain() found as JSON (mgt.explain/1).
+/// to_json() writes what explain() found as JSON (mgt.explain/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::search::ExplainReport& report);
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::Candidate& candidate);
 [[nodiscard]] nlohmann::json to_json(const criticism::tests::ConfusionMatrix& confusion);

@@ -4,9 +4,9 @@
 
 #include "calib/fit/fit_report.h"
 
-/// Writes the result of a fit as JSON (mgt.fit/1), which `mgt fit --json` prints. Plain numbers in the unit
-/// named by the key's suffix, angles in degrees, standard deviations beside the values. What does not exist
-/// (no held-out error, no halves) is null.
+/// to_json() writes the result of a fit as JSON (mgt.fit/1), which `mgt fit --json` prints. Plain numbers in
+/// the unit named by the key's suffix, angles in degrees, standard deviations beside the values. What does
+/// not exist (no held-out error, no halves) is null.
 namespace mgtd::calib::report {
 
 [[nodiscard]] nlohmann::json to_json(const fit::FitReport& report);

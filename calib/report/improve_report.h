@@ -9,7 +9,7 @@
 
 namespace mgtd::calib::report {
 
-/// Writes what improve() did as JSON (mgt.improve/1).
+/// to_json() writes what improve() did as JSON (mgt.improve/1).
 [[nodiscard]] nlohmann::json to_json(const criticism::search::ImproveReport& report);
 [[nodiscard]] std::string to_text(const criticism::search::ImproveReport& report,
                                   std::size_t width = kAnyWidth);

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
-/// These are the equations of sensor_model.h and of the table, written once for values (double) and for
-/// derivatives (Dual<N>).
+/// These functions are the equations of a sensor (sensor_model.h) and of the table, written once for values
+/// (double) and for derivatives (Dual<N>).
 namespace mgtd::calib::sensor {
 
 template <class S>

@@ -4,10 +4,10 @@
 
 namespace mgtd::calib::sensor {
 
-/// Makes a first guess of the parameters of one sensor alone, whatever the rig: step 1 where it holds, else
-/// (condition, a quadric that is no ellipsoid, disturbed poses) the best sphere, which is linear, needs no
-/// sign and has no limit on the offset. It is a start, not an estimate. Refuses too few readings and readings
-/// on a plane.
+/// sensor_start() makes a first guess of the parameters of one sensor alone, whatever the rig: step 1 where
+/// it holds, else (condition, a quadric that is no ellipsoid, disturbed poses) the best sphere, which is
+/// linear, needs no sign and has no limit on the offset. It is a start, not an estimate. Refuses too few
+/// readings and readings on a plane.
 [[nodiscard]] Result<ScalarCalibration> sensor_start(const Eigen::Matrix3Xd& y_nT,
                                                      const Eigen::VectorXd& f_nT);
 

@@ -5,7 +5,7 @@
 
 #include "calib/validity/change.h"
 
-/// Says whether the calibration changed between two runs, in which parameter, and by how many standard
+/// diff() says whether the calibration changed between two runs, in which parameter, and by how many standard
 /// errors.
 namespace mgtd::calib::validity {
 

@@ -6,8 +6,8 @@
 #include "calib/fit/method_choice/fit.h"
 #include "calib/validity/change.h"
 
-/// Checks whether an earlier calibration is still valid, from a dozen poses, which need not determine a
-/// calibration of their own.
+/// check() tells whether an earlier calibration is still valid, from a dozen poses, which need not determine
+/// a calibration of their own.
 ///
 /// The calibration is held and each pose fits its own field. What remains is compared with what the noise
 /// of these poses *and* the covariance of the calibration allow: score test of all its parameters together,

@@ -6,7 +6,8 @@
 #include "calib/criticism/live/live_finding.h"
 #include "calib/criticism/live/live_window.h"
 
-/// Tests whether the closure of a window follows a quantity of the instrument: temperature, time or attitude.
+/// criticise() tests whether the closure of a window follows a quantity of the instrument: temperature, time
+/// or attitude.
 ///
 /// Blocks are whitened by the noise of that many samples, times what correlation makes of it: the larger of
 /// the median excess within blocks and the median scatter of the blocks about a regression on everything that

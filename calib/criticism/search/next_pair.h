@@ -8,8 +8,8 @@
 #include "calib/criticism/search/explain.h"
 #include "calib/design/hypothesis_menu.h"
 
-/// Finds which further measurement would tell two effects apart: a given pair, or the one that explain() left
-/// open.
+/// next_of() and next_after() find which further measurement would tell two effects apart: a given pair, or
+/// the one that explain() left open.
 namespace mgtd::calib::criticism::search {
 
 struct NextStep {

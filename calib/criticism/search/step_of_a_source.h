@@ -4,9 +4,9 @@
 
 namespace mgtd::calib::criticism::search {
 
-/// Looks for the source behind a step of the site: the dipole, and the moment at which it came, that take
-/// away most of what a model without the step leaves (tests/dipole_search.h). A magnet that was put down
-/// beside the array is no gradient.
+/// step_of_a_source() looks for the source behind a step of the site: the dipole, and the moment at which it
+/// came, that take away most of what a model without the step leaves (tests/dipole_search.h). A magnet that
+/// was put down beside the array is no gradient.
 ///
 /// `before`: the model without the step, which is the last effect of `with`. Gives the stage with the dipole
 /// in its place where the dipole leaves clearly less; empty where it does not, or where that effect is no

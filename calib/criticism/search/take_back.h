@@ -8,8 +8,9 @@
 
 namespace mgtd::calib::criticism::search {
 
-/// Takes back the rounds from the first surrogate on, says so in the notes, and closes the axis or the sensor
-/// to names: what it misfits counts as its noise from now on, so that it does not bend what others know.
+/// take_back() takes back the rounds from the first surrogate on, says so in the notes, and closes the axis
+/// or the sensor to names: what it misfits counts as its noise from now on, so that it does not bend what
+/// others know.
 void take_back(const Surrogates& found, EffectSearch& search, ExplainReport& report);
 
 /// Takes names back where laws of no library were found on the axes `closed`: all of them, if they leave more

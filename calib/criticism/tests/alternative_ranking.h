@@ -6,8 +6,8 @@
 
 #include "calib/criticism/tests/score.h"
 
-/// Ranks on one scale all hypotheses that fit almost as well as the winner, and says how they would rank in
-/// other runs. alternatives.h defines the scale L.
+/// An AlternativeRanking ranks on one scale all hypotheses that fit almost as well as the winner, and says
+/// how they would rank in other runs. alternatives.h defines the scale L.
 namespace mgtd::calib::criticism::tests {
 
 struct RankedAlternative {

@@ -7,8 +7,8 @@
 #include "calib/criticism/tests/candidate_effect.h"
 #include "calib/fit/method_choice/fit.h"
 
-/// Examines a user's formula on a run before it is used: how much of it the calibration absorbs, how large it
-/// would have to be to be seen, and with which known effects it is collinear.
+/// examine_formula() examines a user's formula on a run before it is used: how much of it the calibration
+/// absorbs, how large it would have to be to be seen, and with which known effects it is collinear.
 namespace mgtd::calib::criticism::tests {
 
 struct Collinearity {

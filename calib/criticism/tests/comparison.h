@@ -12,8 +12,8 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/fit/method_choice/fit.h"
 
-/// Compares model and measurement: how large the noise is, whether the model fits within it, and where it
-/// fails. It names no cause; explain.h does.
+/// A Comparison says how model and measurement agree: how large the noise is, whether the model fits within
+/// it, and where it fails. It names no cause; explain.h does.
 namespace mgtd::calib::criticism::tests {
 
 /// Means of a residual over equally filled bins of a covariate, against what chance makes of them.

@@ -4,10 +4,10 @@
 
 #include "calib/criticism/tests/criticism.h"
 
-/// Tests the residual that a named law leaves on its own axes. Once a law is named, the question is no longer
-/// whether anything is wrong anywhere but whether this law is all there is where it acts: a wrong law that is
-/// similar leaves its difference from the right one just there. Few questions are asked, so that the
-/// difference shows even when it is too small for an alarm.
+/// local_lack_of_fit_log10_p() tests the residual that a named law leaves on its own axes. Once a law is
+/// named, the question is no longer whether anything is wrong anywhere but whether this law is all there is
+/// where it acts: a wrong law that is similar leaves its difference from the right one just there. Few
+/// questions are asked, so that the difference shows even when it is too small for an alarm.
 namespace mgtd::calib::criticism::tests {
 
 /// Probability that a correctly named effect is still reported as incomplete.

@@ -9,8 +9,8 @@
 #include "calib/calibration/tensor.h"
 #include "proto/epoch.h"
 
-/// Finds from the readings which sensors are in another place, or are mounted otherwise, than when they were
-/// calibrated.
+/// A Rearrangement says which sensors, by their readings, are in another place, or are mounted otherwise,
+/// than when they were calibrated.
 ///
 ///     exchanged   the readings of the sensors, given to each other's calibrations, have a closure within
 ///                 noise and calibration (chi-square below explained_closure_chi2()); as they come,

@@ -12,7 +12,7 @@
 namespace mgtd::calib::effects::formula {
 
 struct TabulatedExpression::State {
-  Eigen::Index points{0};
+  Eigen::Index rows{0};
   Lookup lookup;
   struct Name {
     double now{0};  ///< what the parser reads
@@ -29,9 +29,9 @@ struct TabulatedExpression::State {
   }
 };
 
-TabulatedExpression::TabulatedExpression(Eigen::Index points, Lookup lookup)
+TabulatedExpression::TabulatedExpression(Eigen::Index rows, Lookup lookup)
     : state_(std::make_unique<State>()) {
-  state_->points = points;
+  state_->rows = rows;
   state_->lookup = std::move(lookup);
   define_functions(state_->parser);
   state_->parser.SetVarFactory(State::variable, state_.get());
@@ -40,13 +40,13 @@ TabulatedExpression::~TabulatedExpression() = default;
 TabulatedExpression::TabulatedExpression(TabulatedExpression&&) noexcept = default;
 
 Result<Eigen::VectorXd> TabulatedExpression::operator()(const std::string& text) {
-  Eigen::VectorXd out(state_->points);
+  Eigen::VectorXd out(state_->rows);
   try {
-    // The parser's own evaluation in bulk wakes threads, which costs more than a few hundred points do.
+    // The parser's own evaluation in bulk wakes threads, which costs more than a few hundred rows do.
     state_->parser.SetExpr(text);
     std::vector<State::Name*> used;
     for (const auto& [name, variable] : state_->parser.GetUsedVar()) used.push_back(&state_->names.at(name));
-    for (Eigen::Index k = 0; k < state_->points; ++k) {
+    for (Eigen::Index k = 0; k < state_->rows; ++k) {
       for (State::Name* name : used) name->now = name->values[k];
       out[k] = state_->parser.Eval();
     }

@@ -8,20 +8,21 @@
 
 #include "proto/error.h"
 
-/// Evaluates many expressions (expression.h) of the same names at many points. Made for searches that try
-/// thousands of formulas: nothing is kept of an expression that was evaluated.
+/// A TabulatedExpression evaluates many expressions (expression.h) of the same names, for whole
+/// columns of their values at once. It is made for searches that try thousands of formulas: nothing is kept
+/// of an expression that was evaluated.
 namespace mgtd::calib::effects::formula {
 
 class TabulatedExpression {
  public:
-  /// The values of a name at all points; empty where there is no such name. Asked once for each name.
+  /// The column of a name; empty where there is no such name. Asked once for each name.
   using Lookup = std::function<std::optional<Eigen::VectorXd>(const std::string& name)>;
 
-  TabulatedExpression(Eigen::Index points, Lookup lookup);
+  TabulatedExpression(Eigen::Index rows, Lookup lookup);
   ~TabulatedExpression();
   TabulatedExpression(TabulatedExpression&&) noexcept;
 
-  /// At each point; NaN where the expression has no value. Refuses what is no expression, and a name that the
+  /// By row; NaN where the expression has no value. Refuses what is no expression, and a name that the
   /// lookup does not know.
   [[nodiscard]] Result<Eigen::VectorXd> operator()(const std::string& text);
 

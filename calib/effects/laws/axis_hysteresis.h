@@ -8,8 +8,8 @@
 #include "calib/effects/laws/live_memory.h"
 #include "calib/effects/laws/run_memory.h"
 
-/// `axis.hysteresis`: the core remembers where the field came from. Play operator of width w over the whole
-/// run, started at p = 0:
+/// `axis.hysteresis` makes a reading depend on where the field came from, since the core remembers it. It is
+/// a play operator of width w over the whole run, started at p = 0:
 ///
 ///     p <- max(x - w, min(x + w, p)),   y += h (p - x)/w        x = v/F0, h in nT, w of F0
 ///

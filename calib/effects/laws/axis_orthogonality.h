@@ -3,7 +3,7 @@
 #include "calib/effects/laws/axis_effect.h"
 #include "proto/units.h"
 
-/// The angles between the axes of a sensor move with its temperature.
+/// These effects move the angles between the axes of a sensor with its temperature.
 ///
 ///     axis.orthogonality.temperature    y_a += sum_(b != a) chi_ab (T - T0) v_b       arcsec/degC
 ///     axis.orthogonality.temperature2   y_a += sum_(b != a) chi2_ab (T - T0)^2 v_b    arcsec/degC^2

@@ -9,7 +9,7 @@
 #include "calib/effects/laws/live_memory.h"
 #include "calib/effects/laws/run_memory.h"
 
-/// `axis.settling`: a reading creeps to its value after the table has stopped.
+/// `axis.settling` is the creep of a reading to its value after the table has stopped.
 ///
 ///     y += eta (x_prev - x) exp(-s/tau)       x = v/F0, eta in nT, s = seconds from the stop to mid-dwell
 ///

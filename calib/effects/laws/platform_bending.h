@@ -6,7 +6,8 @@
 #include "calib/effects/laws/platform_effect.h"
 #include "proto/units.h"
 
-/// A sensor turns against the platform: R_i <- exp[omega_i]x R_i, so the sensor sees exp[-omega_i]x b_i.
+/// These effects turn a sensor against the platform: R_i <- exp[omega_i]x R_i, so the sensor sees
+/// exp[-omega_i]x b_i.
 ///
 ///     platform.flexure          omega_i = S_i g, g unit gravity, platform frame     deg, 3 x 3 a sensor
 ///     platform.thermal-bending  omega_i = w_i (T_i - T0)                            arcsec/degC, 3 a sensor

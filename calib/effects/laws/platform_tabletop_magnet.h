@@ -5,7 +5,8 @@
 
 #include "calib/effects/effect.h"
 
-/// `platform.tabletop-magnet`: something magnetic on the table turns with it, and the array is remounted.
+/// `platform.tabletop-magnet` is the field of something magnetic on the table, which turns with it while the
+/// array is remounted.
 ///
 ///     b_i += M d_i        d_i constant in the table's frame, M the mounting of the array on the table
 ///

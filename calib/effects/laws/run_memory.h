@@ -11,7 +11,7 @@
 #include "calib/effects/laws/readings_by_angles.h"
 #include "proto/error.h"
 
-/// Reconstructs what the sensors saw before each pose of a run, for effects with a memory.
+/// run_memory() reconstructs what the sensors saw before each pose of a run, for effects with a memory.
 ///
 ///     at a dwell        v = reading - offset
 ///     on the way        v = y(angles) - offset by readings_by_angles.h; only where the run kept the path of

@@ -2,7 +2,7 @@
 #pragma once
 #include "calib/effects/laws/site_effect.h"
 
-/// `site.curvature`: the gradient of the site changes over the cross.
+/// `site.curvature` is the change of the site's gradient over the array.
 ///
 ///     B_i += 1/2 H_ijk x_j x_k      nT/m^2, H symmetric in all indices and traceless: seven numbers
 ///     Hxzz = -(Hxxx + Hxyy), Hyzz = -(Hxxy + Hyyy), Hzzz = -(Hxxz + Hyyz)     no currents, no divergence

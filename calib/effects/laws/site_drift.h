@@ -8,7 +8,7 @@
 #include "calib/effects/laws/site_gradient.h"
 #include "calib/poses/run_time.h"
 
-/// The field of the site changes with time.
+/// These effects let the field of the site, or its gradient, change with time.
 ///
 ///     site.field-drift     B += sum_k c_k cos(k pi t/D), k = 1 .. 3, D the length of the run      nT, 9
 ///     site.gradient-drift  G += G' (t - t0)                      nT/m/h, 5

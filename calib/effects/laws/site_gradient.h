@@ -4,7 +4,7 @@
 
 #include "calib/effects/effect.h"
 
-/// `site.gradient`: the field of the site is not uniform over the cross.
+/// `site.gradient` is the gradient of the site's field, which is not uniform over the array.
 ///
 ///     B(x) = B0 + G x,   G symmetric and traceless (no currents, no divergence), site frame
 ///     coefficients Gxx, Gyy, Gxy, Gxz, Gyz in nT/m;  Gzz = -(Gxx + Gyy)

@@ -7,7 +7,8 @@
 #include "calib/effects/laws/dipole_field.h"
 #include "calib/effects/laws/site_effect.h"
 
-/// `site.step`: something magnetic came to the site or left it, and all four sensors see it from a moment on.
+/// `site.step` is the change of the field when something magnetic came to the site or left it, seen by all
+/// sensors from one moment on.
 ///
 ///     B(x) += dB + dG x         [t >= ts]    dG symmetric and traceless
 ///     B(x) += D(x - place - shift) [t >= ts]    (with x, y, z: a dipole, see dipole_field.h)

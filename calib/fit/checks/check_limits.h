@@ -2,7 +2,7 @@
 #pragma once
 #include "proto/units.h"
 
-/// These are the limits of the checks of a calibration, in SI units and radians. No flag changes them: a
+/// These limits decide which checks a calibration passes, in SI units and radians. No flag changes them: a
 /// calibration that was accepted means the same everywhere.
 namespace mgtd::calib::fit::checks {
 

@@ -4,7 +4,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "proto/fit_so_far.h"
 
-/// Says during a run how accurate a calibration from the poses measured so far would be.
+/// AccuracySoFar says during a run how accurate a calibration from the poses measured so far would be.
 namespace mgtd::calib::fit::joint {
 
 struct AccuracySoFar {

@@ -7,9 +7,8 @@
 #include "calib/sensor/channels.h"
 #include "proto/error.h"
 
-/// Finds faults of the data that a fit could only mistake for something else; they are looked for before a
-/// fit is tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do
-/// not.
+/// These functions find faults of the data that a fit could only mistake for something else, before a fit is
+/// tried. All errors are `bad_input`. Medians over the poses decide, so that single gross readings do not.
 namespace mgtd::calib::fit::joint {
 
 /// Readings and total field in units a thousand (uT, pT) or a million (mT) times apart. `f_nT`: the field

@@ -7,9 +7,9 @@
 #include "calib/fit/joint/stretch_scan.h"
 #include "calib/fit/outlier_node.h"
 
-/// Finds observations that the other data contradict. Each stays in the table, is left out of the sums, and
-/// is listed with the shift that would reconcile it (mean-shift outlier model). Nothing is ever dropped
-/// silently, and what fits after all comes back.
+/// Outliers finds observations that the other data contradict. Each stays in the table, is left out of the
+/// sums, and is listed with the shift that would reconcile it (mean-shift outlier model). Nothing is ever
+/// dropped silently, and what fits after all comes back.
 ///
 /// A law that the model misses is not cured by leaving out where it is largest: limits go by the spread of
 /// each axis over all poses, and an axis that loses many readings keeps them all where no gap parts them from

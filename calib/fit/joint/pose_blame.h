@@ -7,8 +7,8 @@
 #include "calib/fit/joint/pose_model.h"
 #include "calib/fit/joint/pose_residuals.h"
 
-/// Finds which observations of one pose a calibration contradicts: the fewest without which the others of the
-/// pose agree with it.
+/// A PoseBlame finds which observations of one pose a calibration contradicts: the fewest without which the
+/// others of the pose agree with it.
 namespace mgtd::calib::fit::joint {
 
 using Rows = std::bitset<kMostObservations>;  ///< readings, scalar, attitude

@@ -4,9 +4,9 @@
 
 #include "calib/fit/joint/joint_setup.h"
 
-/// Finds the numbers of effects that a linear fit cannot estimate (EffectFamily::scan: the width of a
-/// hysteresis, the time of a step, the place of a dipole) by profile likelihood: those that a spec leaves out
-/// are searched, those it gives are kept.
+/// profile_search() finds the numbers of effects that a linear fit cannot estimate (EffectFamily::scan: the
+/// width of a hysteresis, the time of a step, the place of a dipole) by profile likelihood: those that a spec
+/// leaves out are searched, those it gives are kept.
 ///
 /// One fit sets weights and outlier nodes; then the scanned values are tried with these held, all other
 /// unknowns refitted, and a smooth number is refined between the neighbours of the best by golden section.

@@ -6,8 +6,9 @@
 #include "calib/fit/joint/joint_problem.h"
 #include "calib/fit/outlier_node.h"
 
-/// Finds why readings contradict the others: from the digits alone (saturated, stuck), since a mean over a
-/// dwell never repeats by chance, and from where in the run they stand (a source that came and went).
+/// These functions find why readings contradict the others: from the digits alone (saturated, stuck), since a
+/// mean over a dwell never repeats by chance, and from where in the run they stand (a source that came and
+/// went).
 namespace mgtd::calib::fit::joint {
 
 /// Poses in which this channel reads its largest, or its smallest, value, where three or more share it to the

@@ -2,8 +2,8 @@
 #pragma once
 #include "calib/fit/joint/joint_problem.h"
 
-/// Finds how far the noise of neighbouring poses is correlated, for recordings of single samples, which a
-/// sensor's bandwidth and 1/f noise make alike.
+/// sample_correlation() finds how far the noise of neighbouring poses is correlated, for recordings of single
+/// samples, which a sensor's bandwidth and 1/f noise make alike.
 ///
 /// Residuals of pose k with its nuisances fitted are e_k = M_k n_k, M_k = I - N (N'N + Lambda)^-1 N', noise
 /// in its own standard deviations. With one correlation r from pose to pose in every channel,

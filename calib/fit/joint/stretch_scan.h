@@ -6,8 +6,8 @@
 #include "calib/fit/joint/joint_solver.h"
 #include "calib/fit/joint/pose_blame.h"
 
-/// Finds the stretch of consecutive poses in which one sensor, or all of them, read by a constant apart from
-/// the rest of the run, by too little for any single pose to show it.
+/// shifted_stretch() finds the stretch of consecutive poses in which one sensor, or all of them, read by a
+/// constant apart from the rest of the run, by too little for any single pose to show it.
 ///
 /// A scan statistic: for each window of a twentieth to a third of the run, and each set of channels, the
 /// score test of a shift of these channels in the window (chi-square with as many degrees of freedom as
