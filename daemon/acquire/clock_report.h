@@ -3,9 +3,9 @@
 #include "daemon/acquire/clock_model.h"
 #include "proto/status_report.h"
 
-/// Reports a digitiser's clock to the operator. A rate that is off by more than any oscillator
-/// (kMostRateError, beyond what the estimate leaves open) is trouble: something is wrong with the trigger or
-/// the oscillator. Its samples keep their true times all the same. Pure.
+/// clock_report() says how a digitiser's clock is doing, for the operator. A rate that is off by more than
+/// any oscillator (kMostRateError, beyond what the estimate leaves open) is trouble: something is wrong with
+/// the trigger or the oscillator. Its samples keep their true times all the same. Pure.
 namespace mgtd::daemon::acquire {
 
 inline constexpr double kMostRateError = 5e-4;

@@ -5,7 +5,8 @@
 
 #include "proto/time.h"
 
-/// Reports readiness and state to the service manager (sd_notify). Outside systemd every call does nothing.
+/// These functions report readiness and state to the service manager (sd_notify). Outside systemd every call
+/// does nothing.
 namespace mgtd::daemon::app {
 
 void notify_ready();

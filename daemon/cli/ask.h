@@ -7,7 +7,7 @@
 
 namespace mgtd::daemon::cli {
 
-/// This sends one request to the daemon that `session` names and returns its answer.
+/// ask() sends one request to the daemon that `session` names and returns its answer.
 [[nodiscard]] Result<nlohmann::json> ask(const Session& session, ControlCommand command,
                                          nlohmann::json args = nlohmann::json::object());
 

@@ -9,7 +9,7 @@
 
 namespace mgtd::daemon::cli {
 
-/// This reads a CAL.json. Refusals name the file.
+/// read_calibration() reads a CAL.json. Refusals name the file.
 [[nodiscard]] Result<calib::calibration::Calibration> read_calibration(const std::string& path);
 
 /// A CAL.json as it is, or a run fitted with these flags; told apart by content.

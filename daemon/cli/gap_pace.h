@@ -2,8 +2,8 @@
 #pragma once
 #include "proto/time.h"
 
-/// Decides when a gap that goes on is mentioned again: 10 s after it began, a minute after that, then every
-/// ten minutes. A rig without power sends a GAP a second; nobody wants to read each of them.
+/// A GapPace decides when a gap that goes on is mentioned again: 10 s after it began, a minute after that,
+/// then every ten minutes. A rig without power sends a GAP a second; nobody wants to read each of them.
 namespace mgtd::daemon::cli {
 
 class GapPace {

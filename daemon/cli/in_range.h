@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-/// This checks numbers of the command line that have a physical range. The error names the number that was
-/// given, the range and its unit; nan and inf are outside of every range.
+/// These validators check numbers of the command line that have a physical range. The error names the number
+/// that was given, the range and its unit; nan and inf are outside of every range.
 namespace mgtd::daemon::cli {
 
 /// From `low` to `high`, both included.

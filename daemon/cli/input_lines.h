@@ -5,9 +5,9 @@
 
 namespace mgtd::daemon::cli {
 
-/// This reads what the operator types, line by line. A signal of `catch_interrupts` ends the wait for a line
-/// at whatever moment it comes; a read of std::cin would miss one that comes just before it and wait for the
-/// next key. For the only thread that reads `fd`, and whose signals these are.
+/// InputLines reads what the operator types, line by line. A signal of `catch_interrupts` ends the wait for a
+/// line at whatever moment it comes; a read of std::cin would miss one that comes just before it and wait for
+/// the next key. For the only thread that reads `fd`, and whose signals these are.
 class InputLines {
  public:
   explicit InputLines(int fd) : fd_(fd) {}

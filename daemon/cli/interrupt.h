@@ -4,8 +4,8 @@
 
 namespace mgtd::daemon::cli {
 
-/// After this call these signals are remembered and no longer end the program; but a second Ctrl-C does,
-/// whatever it waits for.
+/// catch_interrupts() has these signals remembered: from then on they no longer end the program; but a second
+/// Ctrl-C does, whatever it waits for.
 void catch_interrupts(std::initializer_list<int> signals);
 /// Whether one came.
 [[nodiscard]] bool interrupted();

@@ -5,10 +5,10 @@
 
 #include "proto/error.h"
 
-/// This puts the files of raw journals in the order they were written and says which of them a replay can
-/// play: those of a start of the daemon from its first file on, as far as none between is missing. What the
-/// limits on the journal's space and age have removed from the front of a long life takes the rest of that
-/// life with it: what drivers and clocks had learnt by then is in no later file.
+/// journals_of() puts the files of raw journals in the order they were written and says which of them a
+/// replay can play: those of a start of the daemon from its first file on, as far as none between is missing.
+/// What the limits on the journal's space and age have removed from the front of a long life takes the rest
+/// of that life with it: what drivers and clocks had learnt by then is in no later file.
 namespace mgtd::daemon::cli {
 
 struct Journals {

@@ -5,7 +5,7 @@
 
 #include "proto/error.h"
 
-/// This finds the calibration that an operator means by a word.
+/// meant_calibration() finds the calibration that an operator means by a word.
 namespace mgtd::daemon::cli {
 
 /// The id that `word` stands for among the calibrations of the daemon (the answer to `calibrations.list`):

@@ -4,7 +4,7 @@
 
 #include "proto/run_status.h"
 
-/// This shows the progress of a run to someone who waits for it.
+/// These functions show the progress of a run to someone who waits for it on a terminal.
 namespace mgtd::daemon::cli {
 
 /// One line of at most `width` characters: bar, counts, time left, what is happening now.

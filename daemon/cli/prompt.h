@@ -7,7 +7,8 @@
 #include "proto/control_codec.h"
 #include "proto/operator_prompt.h"
 
-/// This is the dialogue with the operator of a run that is set by hand: text comes in, requests go out.
+/// These functions hold the dialogue with the operator of a run that is set by hand: text comes in, requests
+/// go out.
 namespace mgtd::daemon::cli {
 
 /// What to do on a line that was typed at a prompt.

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-/// This writes the key `serial` of each instrument into the text of a configuration. Everything else,
-/// comments included, stays as it was written.
+/// with_serials() writes the key `serial` of each instrument into the text of a configuration. Everything
+/// else, comments included, stays as it was written.
 namespace mgtd::daemon::cli {
 
 struct SerialLines {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// Makes a report fit the terminal that it is printed on, and colours its judgements.
+/// These functions make a report fit the terminal that it is printed on, and colour its judgements.
 namespace mgtd::daemon::cli {
 
 /// How text is to look where it is printed.

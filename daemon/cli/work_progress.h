@@ -10,11 +10,11 @@
 
 #include "calib/fit/fit_options.h"
 
-/// Shows on a terminal how long a computation has taken so far and, where it says how much of it is done, how
-/// long it will still take; of fits, how many there were and the residual so far. Nothing appears within the
-/// first second, nor where stderr is no terminal, and nothing is left on the screen afterwards.
-/// With MGTD_PROGRESS=lines in the environment, stderr gets the same as one line every half second instead,
-/// whatever it is: so the console, which starts `mgt` for a page, hears how far it is.
+/// WorkProgress shows on a terminal how long a computation has taken so far and, where it says how much of it
+/// is done, how long it will still take; of fits, how many there were and the residual so far. Nothing
+/// appears within the first second, nor where stderr is no terminal, and nothing is left on the screen
+/// afterwards. With MGTD_PROGRESS=lines in the environment, stderr gets the same as one line every half
+/// second instead, whatever it is: so the console, which starts `mgt` for a page, hears how far it is.
 namespace mgtd::daemon::cli {
 
 /// What is known of a computation that is under way.

@@ -7,8 +7,8 @@
 
 #include "drivers/settings.h"
 
-/// This turns one TOML table into Settings: nested tables are flattened with dots, and every key knows its
-/// place in the file.
+/// to_settings() turns one TOML table into Settings: nested tables are flattened with dots, and every key
+/// knows its place in the file.
 namespace mgtd::daemon::config {
 
 /// "file:line:column: what is wrong", where `text` is not TOML.

@@ -8,7 +8,7 @@
 
 namespace mgtd::daemon::plan {
 
-/// Turns a list of poses into the request for them that a client sends to the daemon.
+/// requested_poses() turns a list of poses into the request for them that a client sends to the daemon.
 [[nodiscard]] std::vector<RequestedPose> requested_poses(const calib::poses::PoseList& list);
 
 /// A plan of the poses that a list names, in its order: what `mgt next -o` and `mgt plan` speak of becomes a

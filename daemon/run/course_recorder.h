@@ -15,8 +15,9 @@
 #include "proto/run_course.h"
 #include "proto/run_status.h"
 
-/// Records the course of a run while it goes on: the directions of the field at the poses planned and
-/// measured, the accuracy after each fit of the poses so far, and the disturbances with what the run did.
+/// A CourseRecorder records the course of a run while it goes on: the directions of the field at the poses
+/// planned and measured, the accuracy after each fit of the poses so far, and the disturbances with what the
+/// run did.
 ///
 /// The direction at a measured pose is the mean of its raw readings; that at a planned one is
 ///

@@ -8,7 +8,8 @@
 #include "daemon/run/field_blocks.h"
 #include "proto/run_status.h"
 
-/// Tests whether the field changes while the table stands, because something magnetic passes by.
+/// disturbance_in() tests whether the field changes while the table stands, because something magnetic passes
+/// by.
 ///
 ///   array    S = sum over A = 3N axes and B blocks of (block - mean)^2 / w,  w = expected variance of a
 ///   block

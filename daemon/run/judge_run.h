@@ -13,7 +13,8 @@
 #include "daemon/run/run_judgement.h"
 #include "proto/requested_pose.h"
 
-/// Judges a run as far as it is measured, and chooses what to measure next so that its verdict becomes clear.
+/// judge_run() judges a run as far as it is measured, and chooses what to measure next so that its verdict
+/// becomes clear.
 ///
 /// Where several effects could have made the residual, or several formulas (mgt discover) what no effect
 /// explains, the best action of `mgt next` is taken: one that the rig can do alone before one that needs

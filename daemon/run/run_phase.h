@@ -12,8 +12,8 @@
 #include "proto/run_status.h"
 #include "proto/time.h"
 
-/// These are the phases of a calibration run, each with what only it needs; run_fsm.h says which follows
-/// which.
+/// A Phase is what a calibration run is doing now, with what only this phase needs; run_fsm.h says which
+/// phase follows which.
 namespace mgtd::daemon::run {
 namespace phase {
 

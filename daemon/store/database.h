@@ -11,8 +11,8 @@
 
 #include "proto/error.h"
 
-/// This wraps SQLite in values: a connection, a statement, a transaction. Errors name the file, what SQLite
-/// says, and what to do.
+/// A Database wraps SQLite in values: a connection, a statement, a transaction. Errors name the file, what
+/// SQLite says, and what to do.
 namespace mgtd::daemon::store {
 
 class Database;

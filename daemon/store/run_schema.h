@@ -5,7 +5,7 @@
 #include "daemon/store/database.h"
 #include "daemon/store/run_header.h"
 
-/// This creates the tables of a run file, and writes its header as rows of `meta`.
+/// These functions create the tables of a run file, write its header as rows of `meta`, and read it back.
 namespace mgtd::daemon::store {
 
 inline constexpr int kRunApplicationId = 0x6d677472;  ///< "mgtr", at byte 68 of the file: file(1) can know it

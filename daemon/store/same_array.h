@@ -7,7 +7,7 @@
 
 namespace mgtd::daemon::store {
 
-/// A file, and where the sensors stand that it is of.
+/// A PlacedFile is a file, and where the sensors stand that it is of.
 struct PlacedFile {
   std::string name;
   calib::sensor::Geometry places;
