@@ -22,13 +22,13 @@ constexpr auto kTick = std::chrono::milliseconds(20);
 
 serve::StreamConfig stream_config(const config::Config& config) {
   serve::StreamConfig out;
-  out.tcp = config.stream_tcp;
-  out.unix_path = config.stream_unix;
+  out.tcp = config.stream.tcp;
+  out.unix_path = config.stream.unix_path;
   return out;
 }
 
 std::filesystem::path runs_directory(const config::Config& config) {
-  return std::filesystem::path(config.store_dir) / "runs";
+  return std::filesystem::path(config.store.dir) / "runs";
 }
 
 }  // namespace
@@ -43,14 +43,14 @@ DaemonApp::DaemonApp(boost::asio::io_context& io, config::Config config, store::
       core_(config_, *this),
       recording_(io, config_, quiet_),
       stream_(io, stream_config(config_), {config_.rig_name, software(), array_}),
-      control_(io, {.path = config_.control_unix, .mode = config_.control_mode},
+      control_(io, {.path = config_.control.unix_path, .mode = config_.control.mode},
                [this](const ControlRequest& request) { return answer(request); }),
       console_{{},
                serve::console::ConsoleServer(
                    io,
-                   {.listen = config_.console_listen,
-                    .hosts = config_.console_hosts,
-                    .control_from_network = config_.console_control_from_network,
+                   {.listen = config_.console.listen,
+                    .hosts = config_.console.hosts,
+                    .control_from_network = config_.console.control_from_network,
                     .workbench = serve::console::WorkbenchConfig{.runs = runs_directory(config_),
                                                                  .mgt = serve::console::mgt_beside_us(),
                                                                  .for_others = true}},
@@ -90,7 +90,7 @@ Result<void> DaemonApp::start() {
   if (auto bound = control_.start(); !bound) return bound;
   // What can be done without: the rig is measured and operated all the same.
   if (auto bound = console_.server.start(); !bound) spdlog::warn("no web console: {}", bound.error().text());
-  if (config_.console_control_from_network)
+  if (config_.console.control_from_network)
     spdlog::warn("the console takes control from the network: its token travels unencrypted");
   core_.start_instruments(clock_.now());
   ports_.start();
@@ -99,8 +99,8 @@ Result<void> DaemonApp::start() {
   tick();
   if (config_.speed_up != 1)
     spdlog::warn("time runs {} times faster than real: only for a simulated rig", config_.speed_up);
-  spdlog::info("rig '{}': stream on {} and {}, control on {}", config_.rig_name, config_.stream_tcp,
-               config_.stream_unix, config_.control_unix);
+  spdlog::info("rig '{}': stream on {} and {}, control on {}", config_.rig_name, config_.stream.tcp,
+               config_.stream.unix_path, config_.control.unix_path);
   return {};
 }
 

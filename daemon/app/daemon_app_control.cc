@@ -25,8 +25,8 @@ Reply DaemonApp::answer(const ControlRequest& request) {
           {"software", software()},
           {"rig", config_.rig_name},
           {"protocol", {{"major", kControlProtocolMajor}, {"minor", kControlProtocolMinor}}},
-          {"stream_tcp", config_.stream_tcp},
-          {"stream_unix", config_.stream_unix}};
+          {"stream_tcp", config_.stream.tcp},
+          {"stream_unix", config_.stream.unix_path}};
     case ControlCommand::status:
       return to_json(report());
     case ControlCommand::console:

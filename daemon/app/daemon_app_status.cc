@@ -92,7 +92,7 @@ StatusReport DaemonApp::report() const {
   recording_.report(out);
   if (!console_.server.address().empty()) out.console = console_.server.address();
   std::error_code ec;
-  if (const auto space = std::filesystem::space(config_.store_dir, ec); !ec)
+  if (const auto space = std::filesystem::space(config_.store.dir, ec); !ec)
     out.disk_free_bytes = space.available;
   out.run = run_.status(now.mono);
   if (core_.probing()) out.magnet = core_.probe()->status();

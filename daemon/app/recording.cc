@@ -28,29 +28,31 @@ RecordingStatus status_of(const store::Journal& journal) {
 }  // namespace
 
 LifeNote Recording::start(Stamp now, serve::StreamServer& stream) {
-  const std::filesystem::path store(config_.store_dir);
-  if (config_.journal) {
+  const std::filesystem::path store(config_.store.dir);
+  if (config_.store.journal) {
     store::JournalConfig journal;
     journal.directory = store / "runs";
     journal.name = fmt::format("raw-{:011}", now.wall.ns / 1'000'000'000);
     journal.header = {config_.rig_name, ""};
     journal.family = "raw-";
-    journal.keep = {static_cast<std::uint64_t>(config_.journal_mb) * kMegabyte,
-                    from_seconds(config_.journal_days * 86'400)};
-    if (config_.journal_mb > 0) journal.rotate_bytes = std::min(journal.rotate_bytes, journal.keep.bytes / 4);
+    journal.keep = {static_cast<std::uint64_t>(config_.store.journal_mb) * kMegabyte,
+                    from_seconds(config_.store.journal_days * 86'400)};
+    if (config_.store.journal_mb > 0)
+      journal.rotate_bytes = std::min(journal.rotate_bytes, journal.keep.bytes / 4);
     journal_.emplace(std::move(journal), now.mono);
   }
   LifeNote life{software(), config_.text, 0, {}};
-  if (config_.ring_mb > 0) start_disk_ring(life, now, stream);
+  if (config_.store.ring_mb > 0) start_disk_ring(life, now, stream);
   return life;
 }
 
 void Recording::start_disk_ring(LifeNote& life, Stamp now, serve::StreamServer& stream) {
-  disk_ring_.emplace(store::DiskRingConfig{.directory = std::filesystem::path(config_.store_dir) / "stream",
-                                           .rig = config_.rig_name,
-                                           .rate_hz = config_.rate_hz,
-                                           .bytes = static_cast<std::uint64_t>(config_.ring_mb) * kMegabyte},
-                     now);
+  disk_ring_.emplace(
+      store::DiskRingConfig{.directory = std::filesystem::path(config_.store.dir) / "stream",
+                            .rig = config_.rig_name,
+                            .rate_hz = config_.rate_hz,
+                            .bytes = static_cast<std::uint64_t>(config_.store.ring_mb) * kMegabyte},
+      now);
   stream.keep(*disk_ring_);
   life.first_seq = disk_ring_->first_seq();
   life.before = disk_ring_->between();
@@ -80,10 +82,10 @@ std::optional<std::uint64_t> Recording::watch(store::Journal& journal, const std
 
 void Recording::guard_reserve() {
   std::error_code ec;
-  const auto space = std::filesystem::space(config_.store_dir, ec);
+  const auto space = std::filesystem::space(config_.store.dir, ec);
   if (ec) return;
   const auto free_mb = static_cast<double>(space.available) / static_cast<double>(kMegabyte);
-  const auto reserve_mb = static_cast<double>(config_.reserve_mb);
+  const auto reserve_mb = static_cast<double>(config_.store.reserve_mb);
   for (store::Journal* const journal :
        {journal_ ? &*journal_ : nullptr, disk_ring_ ? &disk_ring_->journal() : nullptr}) {
     if (journal == nullptr) continue;
@@ -91,7 +93,7 @@ void Recording::guard_reserve() {
       journal->hold({ErrorCode::io,
                      fmt::format("{:.0f} MB are free on the disk of {}, {:.0f} are kept for runs and "
                                  "calibrations; not recorded until there is more",
-                                 free_mb, config_.store_dir, reserve_mb),
+                                 free_mb, config_.store.dir, reserve_mb),
                      "make room, or lower reserve_mb, journal_mb or ring_mb in [store]"});
     } else if (free_mb >= kRoomAgain * reserve_mb) {
       journal->release();

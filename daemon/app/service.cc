@@ -18,9 +18,9 @@ namespace mgtd::daemon::app {
 Result<void> run_service(config::Config config) {
   start_log(config.log_level);
   std::signal(SIGPIPE, SIG_IGN);
-  const auto lock = store::StoreLock::take(config.store_dir);
+  const auto lock = store::StoreLock::take(config.store.dir);
   if (!lock) return tl::unexpected(lock.error());
-  auto calibrations = store::CalibrationStore::open(std::filesystem::path(config.store_dir) / "calibrations");
+  auto calibrations = store::CalibrationStore::open(std::filesystem::path(config.store.dir) / "calibrations");
   if (!calibrations) return tl::unexpected(calibrations.error());
   boost::asio::io_context io(1);
   DaemonApp app(io, std::move(config), *std::move(calibrations));

@@ -212,7 +212,7 @@ void Reader::read(const toml::table& root) {
 
 /// The size of the field fixes the scale of all sensors.
 void Reader::warn_without_field() {
-  if (config_.scalar || config_.field_nT) return;
+  if (config_.scalar || config_.site.field_nT) return;
   config_.warnings.push_back(fmt::format(
       "{}: warning: neither [scalar] nor field_nT in [site]: a run cannot be calibrated, the size "
       "of the field is not known",

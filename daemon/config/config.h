@@ -47,6 +47,39 @@ struct RunDefaults {
   std::uint64_t seed{1};
 };
 
+/// What is known of the place beside the readings.
+struct SiteSection {
+  std::optional<double> field_nT;  ///< when no scalar reference is there
+  double field_sd_nT{0};
+  std::optional<double> inclination_deg, declination_deg;
+  double table_sd_deg{0.1};
+};
+
+struct StoreSection {
+  std::string dir{"/var/lib/mgtd"};
+  bool journal{true};
+  std::int64_t journal_mb{8192};  ///< of all raw journals together; 0: no limit
+  double journal_days{0};         ///< older ones are removed; 0: no limit
+  std::int64_t ring_mb{256};      ///< of the stream's samples; 0: they are not kept
+  std::int64_t reserve_mb{256};   ///< left free on the disk: below it journal and samples are not recorded
+};
+
+struct StreamSection {
+  std::string tcp{"127.0.0.1:7450"};
+  std::string unix_path{"/run/mgtd/stream.sock"};
+};
+
+struct ControlSection {
+  std::string unix_path{"/run/mgtd/control.sock"};
+  int mode{0660};
+};
+
+struct ConsoleSection {
+  std::string listen{"127.0.0.1:7451"};  ///< empty: there is no web console
+  std::vector<std::string> hosts;        ///< further names of this computer in a browser
+  bool control_from_network{false};      ///< else control is for browsers on this computer
+};
+
 struct Config {
   std::string file;
   std::string text;  ///< as read: kept in every run file
@@ -66,28 +99,15 @@ struct Config {
   /// The table is turned by hand.
   [[nodiscard]] bool by_hand() const { return table.driver == "hand"; }
 
-  std::optional<double> field_nT;  ///< when no scalar reference is there
-  double field_sd_nT{0};
-  double table_sd_deg{0.1};
-  std::optional<double> inclination_deg, declination_deg;
-
+  SiteSection site;
   /// Effects that the model of every run begins with, by their names in the library.
   std::vector<std::string> effects;
 
   RunDefaults run;
-  std::string store_dir{"/var/lib/mgtd"};
-  bool journal{true};
-  std::int64_t journal_mb{8192};  ///< of all raw journals together; 0: no limit
-  double journal_days{0};         ///< older ones are removed; 0: no limit
-  std::int64_t ring_mb{256};      ///< of the stream's samples; 0: they are not kept
-  std::int64_t reserve_mb{256};   ///< left free on the disk: below it journal and samples are not recorded
-  std::string stream_tcp{"127.0.0.1:7450"};
-  std::string stream_unix{"/run/mgtd/stream.sock"};
-  std::string control_unix{"/run/mgtd/control.sock"};
-  int control_mode{0660};
-  std::string console_listen{"127.0.0.1:7451"};  ///< of the web console; empty: there is none
-  std::vector<std::string> console_hosts;        ///< further names of this computer in a browser
-  bool console_control_from_network{false};      ///< else control is for browsers on this computer
+  StoreSection store;
+  StreamSection stream;
+  ControlSection control;
+  ConsoleSection console;
   std::string log_level{"info"};
   double speed_up{1};
 

@@ -35,17 +35,19 @@ std::optional<double> optional_number(Settings& s, std::string_view key) {
 }
 
 void read_site(Settings& s, Config& config) {
-  config.field_nT = optional_number(s, "field_nT");
-  require(s, "field_nT", !config.field_nT || (*config.field_nT > 1000 && *config.field_nT < 200'000),
+  config.site.field_nT = optional_number(s, "field_nT");
+  require(s, "field_nT",
+          !config.site.field_nT || (*config.site.field_nT > 1000 && *config.site.field_nT < 200'000),
           "a total field in nT, 1000 to 200000");
-  config.field_sd_nT = s.number("field_sd_nT", config.field_sd_nT);
-  require(s, "field_sd_nT", config.field_sd_nT >= 0, "0 nT or more");
-  config.inclination_deg = optional_number(s, "inclination_deg");
-  require(s, "inclination_deg", !config.inclination_deg || std::abs(*config.inclination_deg) <= 90,
+  config.site.field_sd_nT = s.number("field_sd_nT", config.site.field_sd_nT);
+  require(s, "field_sd_nT", config.site.field_sd_nT >= 0, "0 nT or more");
+  config.site.inclination_deg = optional_number(s, "inclination_deg");
+  require(s, "inclination_deg", !config.site.inclination_deg || std::abs(*config.site.inclination_deg) <= 90,
           "-90 to 90 deg");
-  config.declination_deg = optional_number(s, "declination_deg");
-  config.table_sd_deg = s.number("table_sd_deg", config.table_sd_deg);
-  require(s, "table_sd_deg", config.table_sd_deg > 0 && config.table_sd_deg < 10, "above 0 and below 10 deg");
+  config.site.declination_deg = optional_number(s, "declination_deg");
+  config.site.table_sd_deg = s.number("table_sd_deg", config.site.table_sd_deg);
+  require(s, "table_sd_deg", config.site.table_sd_deg > 0 && config.site.table_sd_deg < 10,
+          "above 0 and below 10 deg");
 }
 
 void read_calibration(Settings& s, Config& config) {
@@ -99,49 +101,50 @@ void read_run(Settings& s, Config& config) {
 }
 
 void read_console(Settings& s, Config& config) {
-  config.console_listen = s.text("listen", config.console_listen);
-  if (const auto address = parse_tcp_address(config.console_listen);
-      !config.console_listen.empty() && !address)
+  config.console.listen = s.text("listen", config.console.listen);
+  if (const auto address = parse_tcp_address(config.console.listen);
+      !config.console.listen.empty() && !address)
     s.object("listen", address.error().text());
-  config.console_hosts = s.texts("hosts");
-  for (const std::string& host : config.console_hosts)
+  config.console.hosts = s.texts("hosts");
+  for (const std::string& host : config.console.hosts)
     require(s, "hosts", !host.empty() && host.find_first_of("/ \t@") == std::string::npos,
             "names or addresses of this computer without http:// and port, like \"rig7.local\"");
   const std::string from = s.text("control_from", "loopback");
   require(s, "control_from", from == "loopback" || from == "network", "\"loopback\" or \"network\"");
-  config.console_control_from_network = from == "network";
+  config.console.control_from_network = from == "network";
 }
 
 void read_store(Settings& s, Config& config) {
-  config.store_dir = s.text("dir", config.store_dir);
-  config.journal = s.boolean("journal", config.journal);
-  config.journal_mb = s.integer("journal_mb", config.journal_mb);
-  require(s, "journal_mb", config.journal_mb == 0 || config.journal_mb >= 16,
+  config.store.dir = s.text("dir", config.store.dir);
+  config.store.journal = s.boolean("journal", config.store.journal);
+  config.store.journal_mb = s.integer("journal_mb", config.store.journal_mb);
+  require(s, "journal_mb", config.store.journal_mb == 0 || config.store.journal_mb >= 16,
           "16 MB or more, or 0 for no limit");
-  config.journal_days = s.number("journal_days", config.journal_days);
-  require(s, "journal_days", config.journal_days >= 0 && config.journal_days <= 36'500,
+  config.store.journal_days = s.number("journal_days", config.store.journal_days);
+  require(s, "journal_days", config.store.journal_days >= 0 && config.store.journal_days <= 36'500,
           "0 (no limit) to 36500 days");
-  config.ring_mb = s.integer("ring_mb", config.ring_mb);
-  require(s, "ring_mb", config.ring_mb == 0 || (config.ring_mb >= 1 && config.ring_mb <= 1'000'000),
+  config.store.ring_mb = s.integer("ring_mb", config.store.ring_mb);
+  require(s, "ring_mb",
+          config.store.ring_mb == 0 || (config.store.ring_mb >= 1 && config.store.ring_mb <= 1'000'000),
           "1 to 1000000 MB, or 0 for none");
-  config.reserve_mb = s.integer("reserve_mb", config.reserve_mb);
-  require(s, "reserve_mb", config.reserve_mb >= 0, "0 MB or more");
+  config.store.reserve_mb = s.integer("reserve_mb", config.store.reserve_mb);
+  require(s, "reserve_mb", config.store.reserve_mb >= 0, "0 MB or more");
 }
 
 void read_stream(Settings& s, Config& config) {
-  config.stream_tcp = s.text("tcp", config.stream_tcp);
-  if (const auto address = parse_tcp_address(config.stream_tcp); !config.stream_tcp.empty() && !address)
+  config.stream.tcp = s.text("tcp", config.stream.tcp);
+  if (const auto address = parse_tcp_address(config.stream.tcp); !config.stream.tcp.empty() && !address)
     s.object("tcp", address.error().text());
-  config.stream_unix = s.text("unix", config.stream_unix);
+  config.stream.unix_path = s.text("unix", config.stream.unix_path);
 }
 
 void read_control(Settings& s, Config& config) {
-  config.control_unix = s.text("unix", config.control_unix);
+  config.control.unix_path = s.text("unix", config.control.unix_path);
   const std::string mode = s.text("mode", "0660");
   const bool octal =
       mode.size() <= 4 && !mode.empty() && mode.find_first_not_of("01234567") == std::string::npos;
   require(s, "mode", octal, "file permissions in octal, like \"0660\"");
-  if (octal) config.control_mode = static_cast<int>(std::strtol(mode.c_str(), nullptr, 8));
+  if (octal) config.control.mode = static_cast<int>(std::strtol(mode.c_str(), nullptr, 8));
 }
 
 void read_daemon(Settings& s, Config& config) {

@@ -93,13 +93,13 @@ Result<PoseTable> planned_poses(const plan::PlanOptions& options, const drivers:
 void assume(const config::Config& config, calib::design::DesignRequest& request) {
   request.candidates = reachable(config, std::move(request.candidates));
   request.geometry = config.geometry();
-  request.table_sd_rad = to_rad(config.table_sd_deg);
-  request.f_nT = config.field_nT.value_or(request.f_nT);
+  request.table_sd_rad = to_rad(config.site.table_sd_deg);
+  request.f_nT = config.site.field_nT.value_or(request.f_nT);
   if (!config.scalar) request.scalar_sd_nT = std::nullopt;
-  request.field_known = config.field_nT.has_value();
-  request.field_sd_nT = config.field_sd_nT;
-  if (config.inclination_deg) request.inclination_rad = to_rad(*config.inclination_deg);
-  if (config.declination_deg) request.declination_rad = to_rad(*config.declination_deg);
+  request.field_known = config.site.field_nT.has_value();
+  request.field_sd_nT = config.site.field_sd_nT;
+  if (config.site.inclination_deg) request.inclination_rad = to_rad(*config.site.inclination_deg);
+  if (config.site.declination_deg) request.declination_rad = to_rad(*config.site.declination_deg);
 }
 
 std::vector<TableAngles> reachable(const config::Config& config, std::vector<TableAngles> attitudes) {

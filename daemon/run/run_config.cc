@@ -12,7 +12,7 @@ RunConfig run_config(const config::Config& config, const drivers::TableLimits& l
   out.fewest_poses = calib::fit::joint::kFewestPoses;
   out.limits = limits;
   out.preflight.length_s = config.run.preflight_s;
-  out.preflight.field_nT = config.field_nT;
+  out.preflight.field_nT = config.site.field_nT;
   out.preflight.scalar = config.scalar.has_value();
   out.preflight.rate_hz = out.settle.rate_hz = out.dwell.rate_hz = config.rate_hz;
   out.settle.min_s = config.run.settle_min_s;

@@ -44,11 +44,11 @@ store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
   store::RunOptions out;
   out.geometry = c.geometry();
   out.sensor_names = store::numbered_sensors(out.geometry.sensors());
-  out.field_nT = c.field_nT;
-  if (c.field_nT) out.field_sd_nT = c.field_sd_nT;
-  if (c.inclination_deg) out.inclination_rad = to_rad(*c.inclination_deg);
-  if (c.declination_deg) out.declination_rad = to_rad(*c.declination_deg);
-  out.table_sd_rad = to_rad(c.table_sd_deg);
+  out.field_nT = c.site.field_nT;
+  if (c.site.field_nT) out.field_sd_nT = c.site.field_sd_nT;
+  if (c.site.inclination_deg) out.inclination_rad = to_rad(*c.site.inclination_deg);
+  if (c.site.declination_deg) out.declination_rad = to_rad(*c.site.declination_deg);
+  out.table_sd_rad = to_rad(c.site.table_sd_deg);
   out.until_tensor_sd_nT_per_m = r.until_tensor_sd_nT_per_m;
   out.until_explained_min = r.until_explained_min;
   out.retries = r.retries;
@@ -56,8 +56,9 @@ store::RunOptions run_options(const config::Config& c, const RunRequest& r) {
 }
 
 std::optional<Eigen::Vector3d> site_direction(const config::Config& c) {
-  if (!c.inclination_deg) return std::nullopt;
-  return calib::fit::joint::direction_of(to_rad(*c.inclination_deg), to_rad(c.declination_deg.value_or(0)));
+  if (!c.site.inclination_deg) return std::nullopt;
+  return calib::fit::joint::direction_of(to_rad(*c.site.inclination_deg),
+                                         to_rad(c.site.declination_deg.value_or(0)));
 }
 
 /// With what was planned while it was measured.

@@ -128,9 +128,9 @@ TEST(Config, TheCommentedExampleIsAcceptedAndItsDefaultsAreTheDefaults) {
   const Config untouched;
   EXPECT_EQ(config->baseline_m, untouched.baseline_m);
   EXPECT_EQ(config->rate_hz, untouched.rate_hz);
-  EXPECT_EQ(config->table_sd_deg, untouched.table_sd_deg);
-  EXPECT_EQ(config->field_nT, untouched.field_nT);
-  EXPECT_EQ(config->field_sd_nT, untouched.field_sd_nT);
+  EXPECT_EQ(config->site.table_sd_deg, untouched.site.table_sd_deg);
+  EXPECT_EQ(config->site.field_nT, untouched.site.field_nT);
+  EXPECT_EQ(config->site.field_sd_nT, untouched.site.field_sd_nT);
   EXPECT_EQ(config->run.step_deg, untouched.run.step_deg);
   EXPECT_EQ(config->run.random, untouched.run.random);
   EXPECT_EQ(config->run.revisits, untouched.run.revisits);
@@ -141,12 +141,12 @@ TEST(Config, TheCommentedExampleIsAcceptedAndItsDefaultsAreTheDefaults) {
   EXPECT_EQ(config->run.preflight_s, untouched.run.preflight_s);
   EXPECT_EQ(config->run.retries, untouched.run.retries);
   EXPECT_EQ(config->run.seed, untouched.run.seed);
-  EXPECT_EQ(config->store_dir, untouched.store_dir);
-  EXPECT_EQ(config->journal, untouched.journal);
-  EXPECT_EQ(config->stream_tcp, untouched.stream_tcp);
-  EXPECT_EQ(config->stream_unix, untouched.stream_unix);
-  EXPECT_EQ(config->control_unix, untouched.control_unix);
-  EXPECT_EQ(config->control_mode, untouched.control_mode);
+  EXPECT_EQ(config->store.dir, untouched.store.dir);
+  EXPECT_EQ(config->store.journal, untouched.store.journal);
+  EXPECT_EQ(config->stream.tcp, untouched.stream.tcp);
+  EXPECT_EQ(config->stream.unix_path, untouched.stream.unix_path);
+  EXPECT_EQ(config->control.unix_path, untouched.control.unix_path);
+  EXPECT_EQ(config->control.mode, untouched.control.mode);
   EXPECT_EQ(config->log_level, untouched.log_level);
   EXPECT_EQ(config->speed_up, untouched.speed_up);
 }
