@@ -22,6 +22,18 @@ struct Config;
 
 namespace mgtd::daemon::run {
 
+/// The longest that a run waits for something before it pauses, gives up or ends.
+struct WaitLimits {
+  double answer_max_s{900};  ///< for the operator's entry
+  double calm_max_s{600};    ///< for the end of a disturbance
+  double lost_max_s{120};    ///< for a device to come back
+  double home_max_s{180};
+  double stop_max_s{10};  ///< from abort to a table seen at rest
+  double store_max_s{30};
+  double judge_max_s{900};
+  double solve_max_s{900};
+};
+
 struct RunConfig {
   std::string run_id;
   std::size_t sensors{kSensorCount};  ///< of the array
@@ -42,20 +54,13 @@ struct RunConfig {
   /// That the active calibration was made with; empty: it does not say, or there is none.
   std::vector<InstrumentIdentity> calibrated{};
 
-  bool by_hand{false};       ///< the table is turned by hand: its scales are asked for
-  double answer_max_s{900};  ///< wait for the operator's entry, then the run pauses
+  bool by_hand{false};  ///< the table is turned by hand: its scales are asked for
 
   DisturbanceLimits disturbance;  ///< the field while the table stands
   double field_step_nT{5};        ///< of the scalar reference from one pose to the next; 0: not looked at
   double calm_s{5};               ///< without a change of the field, after which a disturbance is over
-  double calm_max_s{600};         ///< wait for that, then the run pauses
 
-  double home_max_s{180};
-  double lost_max_s{120};  ///< wait for a device to come back
-  double stop_max_s{10};   ///< from abort to a table seen at rest
-  double store_max_s{30};
-  double judge_max_s{900};
-  double solve_max_s{900};
+  WaitLimits wait;
 };
 
 /// As the configuration wants it, on a table of these limits.

@@ -112,7 +112,7 @@ void RunFsm::advance(phase::Stopping&) {
   const bool rests = table_.reported_after(entered_) && !table_.latest()->moving;
   if (rests) {
     finish(RunState::aborted, "aborted by the operator, the table is at rest; " + kept());
-  } else if (lost_.contains(Slot::table().name()) || timed_out(config_.stop_max_s)) {
+  } else if (lost_.contains(Slot::table().name()) || timed_out(config_.wait.stop_max_s)) {
     finish(RunState::aborted,
            fmt::format("aborted by the operator, but {}: look at it; {}",
                        lost_.contains(Slot::table().name()) ? kUnreachable
@@ -130,9 +130,9 @@ void RunFsm::ask() {
 }
 
 void RunFsm::advance(phase::Asking&) {
-  if (timed_out(config_.answer_max_s))
+  if (timed_out(config_.wait.answer_max_s))
     hold(fmt::format("nothing was entered within {:.0f} min ({}); mgt run resume asks again",
-                     config_.answer_max_s / 60, hands_.prompt()->text));
+                     config_.wait.answer_max_s / 60, hands_.prompt()->text));
 }
 
 Result<void> RunFsm::possible(const ScaleEntered& entered) const {
@@ -200,11 +200,11 @@ void RunFsm::suspend(const FieldDisturbance& seen) {
 
 void RunFsm::advance(phase::Suspended&) {
   if (!table_.referenced()) return lost_reference();
-  if (field_.waited_s(now_.mono) > config_.calm_max_s)
+  if (field_.waited_s(now_.mono) > config_.wait.calm_max_s)
     return hold(fmt::format(
         "{}; it has not become so within {:.0f} s: look what moves or was put down near the array "
         "and the reference; mgt run resume takes the field as it is",
-        message_, config_.calm_max_s));
+        message_, config_.wait.calm_max_s));
   const FieldGuard::Calm calm = field_.calm();
   if (calm == FieldGuard::Calm::disturbed) field_.watch(now_.mono);
   if (calm != FieldGuard::Calm::yes) return;
@@ -280,11 +280,11 @@ void RunFsm::on(const DeviceBack& back) {
 
 void RunFsm::advance(phase::Waiting&) {
   if (lost_.empty()) return go_on();
-  if (timed_out(config_.lost_max_s))
+  if (timed_out(config_.wait.lost_max_s))
     finish(
         RunState::failed,
         fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
-                    lost_.begin()->first, config_.lost_max_s, lost_.begin()->second,
+                    lost_.begin()->first, config_.wait.lost_max_s, lost_.begin()->second,
                     lost_.contains(Slot::table().name()) ? "; it cannot be reached and may still move" : "",
                     kept()));
 }
@@ -296,7 +296,7 @@ std::string RunFsm::in_status() const {
     for (const auto& [device, why] : lost_)
       who += fmt::format("{}{} is lost ({})", who.empty() ? "" : ", ", device, why);
     return fmt::format("{}; {}, waiting up to {:.0f} s, then the pose is measured again", who,
-                       unreachable ? kUnreachable : "the table is stopped", config_.lost_max_s);
+                       unreachable ? kUnreachable : "the table is stopped", config_.wait.lost_max_s);
   }
   const bool matters =
       unreachable && !in<phase::Preflighting>() && (is_measuring(phase_) || in<phase::Paused>());

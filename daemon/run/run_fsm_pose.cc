@@ -130,11 +130,11 @@ void RunFsm::advance(phase::Homing&) {
     table_.set_referenced(true);
     act(Record{"the table is referenced"});
     go_on();
-  } else if (timed_out(config_.home_max_s)) {
+  } else if (timed_out(config_.wait.home_max_s)) {
     hold(fmt::format(
         "the reference move did not end within {:.0f} s; look whether the table is blocked, and at its "
         "error register",
-        config_.home_max_s));
+        config_.wait.home_max_s));
   }
 }
 
@@ -258,29 +258,29 @@ void RunFsm::store(Pose pose) {
 }
 
 void RunFsm::advance(phase::Storing&) {
-  if (timed_out(config_.store_max_s))
+  if (timed_out(config_.wait.store_max_s))
     hold(fmt::format("pose {} is not on disk after {:.0f} s; check the disk", planned().number,
-                     config_.store_max_s));
+                     config_.wait.store_max_s));
 }
 
 void RunFsm::advance(phase::Judging&) {
-  if (!timed_out(config_.judge_max_s)) return;
+  if (!timed_out(config_.wait.judge_max_s)) return;
   act(CancelSolve{});
-  act(Record{fmt::format("no judgement after {:.0f} s: nothing more is measured", config_.judge_max_s)});
+  act(Record{fmt::format("no judgement after {:.0f} s: nothing more is measured", config_.wait.judge_max_s)});
   solve();
 }
 
 void RunFsm::advance(phase::Solving&) {
-  if (!timed_out(config_.solve_max_s)) return;
+  if (!timed_out(config_.wait.solve_max_s)) return;
   act(CancelSolve{});
   finish(RunState::failed, fmt::format("no result of the fit after {:.0f} s; fit the run file by hand: {}",
-                                       config_.solve_max_s, kept()));
+                                       config_.wait.solve_max_s, kept()));
 }
 
 void RunFsm::advance(phase::Proposing&) {
-  if (timed_out(config_.store_max_s))
+  if (timed_out(config_.wait.store_max_s))
     finish(RunState::failed, fmt::format("the calibration is not on disk after {:.0f} s; check the disk: {}",
-                                         config_.store_max_s, kept()));
+                                         config_.wait.store_max_s, kept()));
 }
 
 void RunFsm::bad_pose(const Error& why) {

@@ -14,10 +14,10 @@ TEST(RunConfig, WhatTheHostDoesMayTakeTheHostsTime) {
   const RunConfig real = run_config(config, {});
   config.speed_up = 40;
   const RunConfig fast = run_config(config, {});
-  for (const auto limit : {&RunConfig::store_max_s, &RunConfig::judge_max_s, &RunConfig::solve_max_s,
-                           &RunConfig::stop_max_s, &RunConfig::answer_max_s})
-    EXPECT_DOUBLE_EQ(fast.*limit, 40 * (real.*limit));
-  EXPECT_EQ(fast.lost_max_s, real.lost_max_s) << "a simulated device is as fast as the rig";
+  for (const auto limit : {&WaitLimits::store_max_s, &WaitLimits::judge_max_s, &WaitLimits::solve_max_s,
+                           &WaitLimits::stop_max_s, &WaitLimits::answer_max_s})
+    EXPECT_DOUBLE_EQ(fast.wait.*limit, 40 * (real.wait.*limit));
+  EXPECT_EQ(fast.wait.lost_max_s, real.wait.lost_max_s) << "a simulated device is as fast as the rig";
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ plan::RunPlan short_plan() {
 RunConfig quick_config() {
   auto config = bench_config();
   config.preflight.length_s = 3;
-  config.lost_max_s = 20;
+  config.wait.lost_max_s = 20;
   return config;
 }
 

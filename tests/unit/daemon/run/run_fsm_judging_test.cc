@@ -110,7 +110,7 @@ TEST(RunFsmJudging, WithoutTheWishNothingIsJudged) {
 
 TEST(RunFsmJudging, AJudgementThatNeverComesEndsInTheFit) {
   daemon::run::RunConfig config = until_explained();
-  config.judge_max_s = 30;
+  config.wait.judge_max_s = 30;
   RunBench bench(bench_plan(3), config);
   bench.judge_stalls = true;
   ASSERT_TRUE(bench.run(600));

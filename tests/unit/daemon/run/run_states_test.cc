@@ -82,7 +82,7 @@ TEST(RunStates, ADisturbedRunCanBeAborted) {
 
 TEST(RunStates, ADisturbanceWithoutEndPausesTheRun) {
   daemon::run::RunConfig config = bench_config();
-  config.calm_max_s = 20;
+  config.wait.calm_max_s = 20;
   RunBench bench(bench_plan(2), config);
   ASSERT_TRUE(bench.run_to(RunState::dwelling));
   bench.disturbance_nT = 30;
