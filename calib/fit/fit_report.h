@@ -46,6 +46,13 @@ struct SiteField {
   double inclination_sd_rad{0}, declination_sd_rad{0};
 };
 
+/// Scatter of the attitudes about the table's angles, kept apart from what the model leaves of the readings.
+struct TableScatter {
+  double chi2{0}, dof{0};
+  double sd_rad{0};         ///< estimated
+  double stated_sd_rad{0};  ///< FitOptions::table_sd_rad
+};
+
 struct FitReport {
   calibration::Calibration calibration;
   double chi2{0};  ///< two-step: of |b| against F; joint: of all readings and the scalar reference
@@ -66,9 +73,7 @@ struct FitReport {
   std::optional<AzimuthOrigin> azimuth_origin;  ///< of the two-step and the simplified method
 
   // Of the joint fit:
-  double chi2_table{0}, dof_table{0};          ///< of the table angles, kept apart from the model's
-  double table_sd_rad{0};                      ///< estimated
-  double stated_table_sd_rad{0};               ///< FitOptions::table_sd_rad
+  TableScatter table;
   double residual_nT{0};                       ///< PoseResiduals::residual_nT
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;

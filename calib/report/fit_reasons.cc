@@ -79,10 +79,10 @@ std::vector<std::string> remarks_on_joint(const fit::FitReport& report) {
   for (const std::string& weak : weak_texts(report)) out.push_back("weakly known: " + weak);
   if (!found.known.add.empty()) {
     out.push_back(fmt::format("{}; what would help most: {}", fit::checks::to_text(found.known.coverage),
-                              fit::checks::additions_text(found.known.add, report.table_sd_rad > 0)));
+                              fit::checks::additions_text(found.known.add, report.table.sd_rad > 0)));
   }
-  if (fit::checks::table_is_rough(report.table_sd_rad, report.stated_table_sd_rad))
-    out.push_back(rough_table_text(report.table_sd_rad, report.stated_table_sd_rad));
+  if (fit::checks::table_is_rough(report.table.sd_rad, report.table.stated_sd_rad))
+    out.push_back(rough_table_text(report.table.sd_rad, report.table.stated_sd_rad));
   if (found.wandering.any()) {
     out.push_back(wandering_text(found.wandering) +
                   ", or a law that the model lacks (mgt explain asks which): the uncertainties contain it, "

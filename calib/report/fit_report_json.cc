@@ -104,7 +104,7 @@ json site_json(const fit::SiteField& site) {
 
 void add_joint(const fit::FitReport& report, json& out) {
   out["table"] = {
-      {"sd_deg", to_deg(report.table_sd_rad)}, {"chi2", report.chi2_table}, {"dof", report.dof_table}};
+      {"sd_deg", to_deg(report.table.sd_rad)}, {"chi2", report.table.chi2}, {"dof", report.table.dof}};
   out["residual_nT"] = report.residual_nT;
   out["held_out_residual_nT"] = or_null(report.held_out_residual_nT);
   out["outliers"] = outliers_json(report.outliers);

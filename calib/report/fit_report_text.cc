@@ -144,10 +144,10 @@ std::string heading(const fit::FitReport& report) {
     out += fmt::format("chi-square: {:.5g} for {:.0f} degrees of freedom, of {}\n", report.chi2, report.dof,
                        report.residual_nT > 0 ? "readings and scalar reference" : "|b| less F");
   }
-  if (report.table_sd_rad > 0) {
+  if (report.table.sd_rad > 0) {
     out += fmt::format("table: each angle good to {:.4f} deg{}, estimated; chi-square {:.4g} for {:.0f}\n",
-                       to_deg(report.table_sd_rad), fit::joint::or_more(report.table_sd_rad),
-                       report.chi2_table, report.dof_table);
+                       to_deg(report.table.sd_rad), fit::joint::or_more(report.table.sd_rad),
+                       report.table.chi2, report.table.dof);
   }
   if (report.joint && report.joint->reference_scatter)
     out += fmt::format("reference: {}\n", reference_scatter_text(*report.joint->reference_scatter));

@@ -87,7 +87,7 @@ std::string gauge_text(const joint::Gauge& gauge, std::size_t sensors, double ta
 
 std::string gauge_text(const FitReport& report) {
   if (report.joint)
-    return gauge_text(report.joint->gauge, report.calibration.sensors.size(), report.table_sd_rad,
+    return gauge_text(report.joint->gauge, report.calibration.sensors.size(), report.table.sd_rad,
                       report.joint->common_rotation_sd_rad);
   return report.azimuth_origin ? gauge_text(*report.azimuth_origin, report.site.declination_sd_rad)
                                : std::string();

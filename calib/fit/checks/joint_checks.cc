@@ -30,7 +30,7 @@ Check coverage_check(const FitReport& r, const joint::Identifiability& known) {
               ? std::string("every combination of parameters to better than 0.1 % of the field")
               : fmt::format("{}: {} of field uncertainty; {}", to_text(known.weak.front()),
                             sd_text(known.worst_nT()), to_text(known.coverage)),
-          sd_text(limit), known.add.empty() ? std::string() : additions_text(known.add, r.table_sd_rad > 0)};
+          sd_text(limit), known.add.empty() ? std::string() : additions_text(known.add, r.table.sd_rad > 0)};
 }
 
 Check condition_check(const FitReport& r, const joint::Identifiability& known) {
@@ -39,7 +39,7 @@ Check condition_check(const FitReport& r, const joint::Identifiability& known) {
       fmt::format("{:.2g} between the best and the worst known combination of parameters", known.condition),
       fmt::format("{:.0e}", kMaxCondition),
       known.add.empty() ? std::string("turn the rig about a second and a third axis")
-                        : additions_text(known.add, r.table_sd_rad > 0)};
+                        : additions_text(known.add, r.table.sd_rad > 0)};
 }
 
 /// The turn from a sensor to the signed permutation that names its mounting: half way to the next one the
@@ -66,9 +66,9 @@ Check mounting_check(const FitReport& r) {
 
 Check table_check(const FitReport& r, const FitOptions& options) {
   const double limit = table_limit_rad(options.table_sd_rad);
-  return {"table angles", r.table_sd_rad <= limit,
+  return {"table angles", r.table.sd_rad <= limit,
           fmt::format("the sensors put the attitudes {:.3f} deg rms{} from the table's angles",
-                      to_deg(r.table_sd_rad), joint::or_more(r.table_sd_rad)),
+                      to_deg(r.table.sd_rad), joint::or_more(r.table.sd_rad)),
           limit > kByHand_rad ? fmt::format("{:.3f} deg, {} times the table's {:.3f} deg", to_deg(limit),
                                             kMaxTableSigmas, to_deg(options.table_sd_rad))
                               : fmt::format("{:.3f} deg, of scales read by hand", to_deg(limit)),
@@ -114,7 +114,7 @@ std::vector<Check> joint_checks(const FitReport& r, const FitOptions& options) {
   out.push_back(coverage_check(r, known));
   out.push_back(condition_check(r, known));
   out.push_back(mounting_check(r));
-  if (r.table_sd_rad > 0) {
+  if (r.table.sd_rad > 0) {
     out.push_back(table_check(r, options));
     const SiteField& s = r.site;
     if (options.inclination_rad) {

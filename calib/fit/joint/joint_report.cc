@@ -107,9 +107,9 @@ void fill_statistics(const JointFit& fit, const Reduced& equations, FitReport& r
   report.dof = fit.dof;
   report.noise_nT = fit.noise_nT();
   report.noise_known = fit.sample_noise_nT.has_value();
-  report.chi2_table = fit.chi2_table;
-  report.dof_table = fit.dof_table;
-  report.table_sd_rad = fit.table_sd_rad;
+  report.table.chi2 = fit.chi2_table;
+  report.table.dof = fit.dof_table;
+  report.table.sd_rad = fit.table_sd_rad;
   report.outliers = fit.outliers;
   report.contradicting = fit.contradicting;
   report.site = site_of(fit);
@@ -219,7 +219,7 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   fill_statistics(*fit, equations, report);
   compare_methods(*readings, with_field, *fit, report);
   report.check_poses = errors_of_check_poses(table, *joint, *fit);
-  report.stated_table_sd_rad = options.table_sd_rad;
+  report.table.stated_sd_rad = options.table_sd_rad;
   report.summary = summary_of(*fit, equations.cost.total());
   report.joint = std::make_shared<const JointFindings>(JointFindings{
       .gauge = fit->gauge,

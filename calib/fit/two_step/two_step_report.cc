@@ -183,7 +183,7 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   report.halves = compare_halves(*readings, *fitted, c.geometry);
   report.outliers = left_out_nodes(*all, agreeing, *fitted);
   report.contradicting = static_cast<double>(agreeing.left_out.size()) / static_cast<double>(all->poses());
-  report.stated_table_sd_rad = options.table_sd_rad;
+  report.table.stated_sd_rad = options.table_sd_rad;
   return report;
 }
 

@@ -57,7 +57,7 @@ TEST(JointReport, SaysHowTheFitEnded) {
   EXPECT_LE(s.rounds, kMaxWeighingRounds);
   EXPECT_GE(s.iterations, s.rounds - 1);
   EXPECT_GT(s.initial_cost, s.final_cost);
-  EXPECT_NEAR(s.final_cost, report->chi2 + report->chi2_table, 1e-6 * s.final_cost);
+  EXPECT_NEAR(s.final_cost, report->chi2 + report->table.chi2, 1e-6 * s.final_cost);
   const nlohmann::json out = report::to_json(*report)["summary"];
   EXPECT_EQ(out["termination"], "converged");
   EXPECT_EQ(out["iterations"], s.iterations);
