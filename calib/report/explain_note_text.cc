@@ -122,6 +122,13 @@ std::string text(const criticism::search::LostInWandering& n) {
       n.effect, n.where, n.d, stats::p_phrase(n.log10_p_of_fit));
 }
 
+std::string text(const criticism::search::StepTookLittle& n) {
+  return fmt::format(
+      "{} is not named: it would lower the residual from {:.3g} to {:.3g} nT only, and so many instants were "
+      "tried that beside so much that is unexplained one does so by chance",
+      n.effect, n.before_nT, n.after_nT);
+}
+
 std::string text(const criticism::search::LawOfNoLibrary& n) {
   const std::string what = fmt::format("{} follows something that is in no library", n.where);
   if (n.effects.empty()) return what;

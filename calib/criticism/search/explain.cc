@@ -168,6 +168,7 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   }
   take_back_beside_unknown_laws(search.unknown, criticism, out);
   const bool wandering_describes = take_back_lost_in_wandering(criticism.noise, out);
+  take_back_steps_that_took_little(criticism, out);
   keep_names_found_again(out);
   close_alternatives_that_were_added(out);
   note_absurd_sizes(search, criticism, out);

@@ -85,6 +85,11 @@ struct LostInWandering {
   double d{0};               ///< by which it stood out
   double log10_p_of_fit{0};  ///< that its coefficients are zero
 };
+/// A step in time that took next to nothing of a residual far above the noise.
+struct StepTookLittle {
+  std::string effect;
+  double before_nT{0}, after_nT{0};  ///< residual without and with it
+};
 struct LawOfNoLibrary {
   std::string where;
   std::set<std::string> effects;  ///< that only describe it
@@ -94,6 +99,7 @@ using ExplainNote =
     std::variant<SensorsMirrored, TableAnglesContradict, TableAnglesRough, PosesContradict, NoiseOverstated,
                  ResidualWithoutLaw, SensorsExchanged, TablePathUnknown, ExcessRemains, FallNotAsPredicted,
                  LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
-                 SizeUnusual, SizeBeyondAll, DescribesRecording, LostInWandering, LawOfNoLibrary>;
+                 SizeUnusual, SizeBeyondAll, DescribesRecording, LostInWandering, StepTookLittle,
+                 LawOfNoLibrary>;
 
 }  // namespace mgtd::calib::criticism::search

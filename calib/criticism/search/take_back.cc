@@ -130,6 +130,23 @@ bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& 
   return any && !report.noise.wandering.any();
 }
 
+void take_back_steps_that_took_little(const tests::Criticism& last, ExplainReport& report) {
+  constexpr double kNearlyAll = 0.9;  // of the square that is beyond the noise
+  constexpr double kFarAbove = 3;     // times the noise
+  while (last.rejects() && report.noise.known && !report.rounds.empty()) {
+    const Round& round = report.rounds.back();
+    const double noise_nT2 = report.noise_nT * report.noise_nT,
+                 before_nT2 = round.rms_before_nT * round.rms_before_nT - noise_nT2,
+                 after_nT2 = round.rms_after_nT * round.rms_after_nT - noise_nT2;
+    if (!round.added.effect.ends_with(".step") || round.rms_after_nT < kFarAbove * report.noise_nT ||
+        after_nT2 < kNearlyAll * before_nT2)
+      break;
+    report.notes.emplace_back(StepTookLittle{round.added.effect, round.rms_before_nT, round.rms_after_nT});
+    report.rounds.pop_back();
+  }
+  if (report.rounds.empty()) report.next.clear();
+}
+
 void keep_names_found_again(ExplainReport& report) {
   for (ExplainNote& note : report.notes) {
     auto* const unknown = std::get_if<LawOfNoLibrary>(&note);

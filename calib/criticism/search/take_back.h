@@ -27,6 +27,10 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
 /// wandering only describes it.
 [[nodiscard]] bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
 
+/// Takes the last rounds back as long as each is a step in time that leaves nearly all of a residual which is
+/// far above the noise and still has a shape: of the instants that were tried one fits the shape by chance.
+void take_back_steps_that_took_little(const tests::Criticism& last, ExplainReport& report);
+
 /// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say
 /// so any more.
 void keep_names_found_again(ExplainReport& report);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "calib/criticism/search/explain.h"
 #include "calib/report/verdict_text.h"
@@ -46,6 +47,36 @@ TEST(TakeBack, NothingIsNamedThatTheWanderingMayMake) {
       return std::holds_alternative<LostInWandering>(n);
     })) << kind;
   }
+}
+
+/// Two dipoles a metre and a half away: what gradient and curvature leave of them fits some instant.
+TEST(TakeBack, AStepThatTookNextToNothingIsNotNamed) {
+  const auto rounds_with = [](double step_after_nT) {
+    ExplainReport report;
+    report.noise.known = true;
+    report.noise_nT = 0.02;
+    for (const auto& [effect, before_nT, after_nT] :
+         {std::tuple{"site.gradient", 40.0, 1.51}, std::tuple{"site.step", 1.51, step_after_nT}}) {
+      Round& round = report.rounds.emplace_back();
+      round.added.effect = effect;
+      round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
+    }
+    return report;
+  };
+  tests::Criticism last;
+  last.omnibus_log10_p = -30;
+  ASSERT_TRUE(last.rejects());
+  ExplainReport little = rounds_with(1.49);
+  take_back_steps_that_took_little(last, little);
+  ASSERT_EQ(little.rounds.size(), 1U);
+  EXPECT_EQ(little.rounds.front().added.effect, "site.gradient");
+  EXPECT_EQ(std::get<StepTookLittle>(little.notes.front()).effect, "site.step");
+  ExplainReport much = rounds_with(1.2);
+  take_back_steps_that_took_little(last, much);
+  EXPECT_EQ(much.rounds.size(), 2U);
+  ExplainReport all = rounds_with(0.02);
+  take_back_steps_that_took_little(last, all);
+  EXPECT_EQ(all.rounds.size(), 2U);
 }
 
 TEST(TakeBack, ANameThatIsFoundAgainIsNotInTheNotes) {
