@@ -156,7 +156,9 @@ std::string rising_page(const Extent& extent) {
       "On "
       "the smooth curve above, where each head runs ahead of the one before it, a lag of one temperature "
       "looks "
-      "like the temperature of another head, and a temperature times time like a temperature.\n\n";
+      "like the temperature of another head, and a temperature times time like a temperature. Here dT/dt is "
+      "the "
+      "hard one: the grammar takes it from a line through nine poses, which such a room outruns.\n\n";
   out += rows(unknown_laws(), Course::rise, 300'000, extent, all);
   return out + sums(all) + reliability(all);
 }
