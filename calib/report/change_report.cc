@@ -72,9 +72,10 @@ std::string named_text(const validity::Change& change) {
 }
 
 std::string turn_text(const validity::CommonTurn& turn) {
+  const auto rounded = [](double deg) { return std::round(deg * 1e4) / 1e4 + 0.0; };  // no sign of a zero
   std::string out = "turn of the whole array, which is no change of its calibration:";
   for (int axis = 0; axis < 3; ++axis) {
-    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", to_deg(turn.about_rad[axis]),
+    out += fmt::format("{} {:.4f} ± {:.4f}", axis == 0 ? "" : ",", rounded(to_deg(turn.about_rad[axis])),
                        to_deg(turn.sd_rad[axis]));
   }
   return out + " deg about X, Y, Z";

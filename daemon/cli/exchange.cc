@@ -54,6 +54,10 @@ Result<store::PoseSource> imported(const ExchangeArguments& args) {
   return store::PoseSource{*std::move(poses), std::nullopt, {}, {}};
 }
 
+std::string poses_text(const PoseTable& table) {
+  return fmt::format("{} pose{}", table.poses.size(), table.poses.size() == 1 ? "" : "s");
+}
+
 int run_import(const Session& session, const ExchangeArguments& args) {
   const auto source = imported(args);
   if (!source) return print_error(session, source.error());
@@ -64,7 +68,7 @@ int run_import(const Session& session, const ExchangeArguments& args) {
   if (!geometry) return print_error(session, geometry.error());
   if (auto done = store::import_poses(table, args.to, header_of(table, args, *geometry)); !done)
     return print_error(session, done.error());
-  tell_written(fmt::format("{} poses", table.poses.size()), args.to);
+  tell_written(poses_text(table), args.to);
   if (session.json)
     print_json({{"schema", "mgt.import/1"}, {"poses", table.poses.size()}, {"output", args.to}});
   return 0;
@@ -76,7 +80,7 @@ int run_export(const Session& session, const ExchangeArguments& args) {
   const auto table = store::read_poses(args.from);
   if (!table) return print_error(session, table.error());
   const std::string csv = calib::poses::format_pose_table(*table);
-  if (auto written = output->write(csv, fmt::format("{} poses", table->poses.size())); !written)
+  if (auto written = output->write(csv, poses_text(*table)); !written)
     return print_error(session, written.error());
   if (session.json) {
     print_json({{"schema", "mgt.export/1"},

@@ -71,14 +71,17 @@ class Gaps {
   GapPace pace_;
 };
 
-/// The gradient; the field's components where the array tells no gradient.
+/// The gradient; where the array tells none, the field's components and, of sensors on one line, the
+/// derivative along it.
 std::string vector_or_tensor(const nlohmann::json& s, double sd) {
   const auto& g = s.at("g_nT_per_m");
   const bool told = std::any_of(g.begin(), g.end(), [](const auto& value) { return value.is_number(); });
   const auto& b = s.at("b_nT");
+  std::string along_line = along_line_text(s);
+  if (!along_line.empty()) along_line = "  G " + along_line;
   if (!told && b.at(0).is_number())
-    return fmt::format("B x {:10.2f} y {:10.2f} z {:10.2f} nT", b.at(0).get<double>(), b.at(1).get<double>(),
-                       b.at(2).get<double>());
+    return fmt::format("B x {:10.2f} y {:10.2f} z {:10.2f} nT{}", b.at(0).get<double>(),
+                       b.at(1).get<double>(), b.at(2).get<double>(), along_line);
   return fmt::format("G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m", number(g, "xx", 8), number(g, "yy", 8),
                      number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8), number(g, "yz", 8),
                      sd > 0 ? fmt::format(" each to +-{:.2f} or better", sd) : "");

@@ -100,6 +100,18 @@ std::string closure_limit_text(const nlohmann::json& status) {
 
 }  // namespace
 
+std::string along_line_text(const nlohmann::json& sample) {
+  const auto along = sample.find("along_line_nT_per_m");
+  if (along == sample.end()) return {};
+  std::string out = fmt::format("x {}, y {}, z {} nT/m along the line", number_text((*along)[0]),
+                                number_text((*along)[1]), number_text((*along)[2]));
+  double sd = 0;  // zero without a calibration
+  for (const auto& value : sample.at("along_line_sd_nT_per_m"))
+    if (value.is_number()) sd = std::max(sd, value.get<double>());
+  if (sd > 0) out += fmt::format(", each to +-{:.2f} or better", sd);
+  return out;
+}
+
 void WatchPanel::take(const nlohmann::json& object) {
   const std::string kind = object.at("class");
   if (kind == "TENSOR") sample_ = object;
@@ -123,7 +135,11 @@ std::string WatchPanel::sample_text() const {
   if (const auto& b = sample_.at("b_nT"); b.is_array() && b.size() == 3 && b[0].is_number())
     out += fmt::format("{:<10}x {}, y {}, z {} nT\n", "", number_text(b[0]), number_text(b[1]),
                        number_text(b[2]));
-  out += gradient_table(sample_);
+  // Along an axis of the platform the table has it.
+  if (const std::string table = gradient_table(sample_), along = along_line_text(sample_); !table.empty())
+    out += table;
+  else if (!along.empty())
+    out += fmt::format("{:<10}{}\n", "gradient", along);
   if (const auto closure = sample_.find("closure");
       closure != sample_.end() && closure->is_object() && closure->at("chi2").is_number())
     out += fmt::format("{:<10}chi-square {}{}\n", "closure", number_text(closure->at("chi2"), 1),

@@ -25,6 +25,10 @@ class WatchPanel {
   std::string last_gap_;            ///< why the last epochs are missing
 };
 
+/// "x 12.50, y -3.10, z 0.40 nT/m along the line" of a sample of sensors on one line, the derivative of the
+/// field along that line, with its largest standard deviation where one is known; empty of any other array.
+[[nodiscard]] std::string along_line_text(const nlohmann::json& sample);
+
 /// The first lines of the text, as many as a terminal of so many rows holds above its cursor: over what has
 /// scrolled away the cursor does not come back. Where lines are left out, the last one says so.
 [[nodiscard]] std::string top_of(const std::string& text, std::size_t rows);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "proto/units.h"
+
 namespace mgtd::calib::report {
 namespace {
 
@@ -22,6 +24,15 @@ TEST(SeenText, TakesTheWorstOfAllSensorsOfALargeArray) {
   EXPECT_NE(text.find("scale factor 300 ppm"), std::string::npos) << text;
   EXPECT_NE(text.find("angle between axes 3"), std::string::npos) << text;
   EXPECT_NE(text.find("turn of a sensor 4"), std::string::npos) << text;
+}
+
+TEST(TurnText, HasNoZeroWithASign) {
+  validity::CommonTurn turn;
+  turn.about_rad = {-1e-9, to_rad(-0.5), 0};
+  EXPECT_EQ(
+      turn_text(turn),
+      "turn of the whole array, which is no change of its calibration: 0.0000 ± 0.0000, -0.5000 ± 0.0000, "
+      "0.0000 ± 0.0000 deg about X, Y, Z");
 }
 
 }  // namespace

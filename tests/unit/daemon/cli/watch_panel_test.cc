@@ -74,6 +74,24 @@ TEST(WatchPanel, AnArrayWithoutAGradientShowsTheField) {
   EXPECT_THAT(panel.text(80), Not(HasSubstr("gradient")));
 }
 
+TEST(WatchPanel, SensorsOnALineShowTheDerivativeAlongIt) {
+  json pair = sample();
+  for (auto& component : pair["g_nT_per_m"]) component = nullptr;
+  pair["along_line_nT_per_m"] = {12.5, -3.125, 0.0};
+  pair["along_line_sd_nT_per_m"] = {nullptr, nullptr, nullptr};
+  EXPECT_EQ(along_line_text(pair), "x 12.50, y -3.12, z 0.00 nT/m along the line");
+  pair["along_line_sd_nT_per_m"] = {0.1, 0.25, 0.1};
+  WatchPanel panel;
+  panel.take(pair);
+  EXPECT_THAT(
+      panel.text(80),
+      HasSubstr("\ngradient  x 12.50, y -3.12, z 0.00 nT/m along the line, each to +-0.25 or better\n"));
+  pair["g_nT_per_m"]["xx"] = 12.5;
+  panel.take(pair);
+  EXPECT_THAT(panel.text(80), Not(HasSubstr("along the line")));
+  EXPECT_EQ(along_line_text(sample()), "");
+}
+
 TEST(WatchPanel, ASuspectCalibrationSaysWhatWasMeasuredAndWhatToDo) {
   json doubtful = status("2026-11-21T10:00:00Z");
   doubtful["criticism"] = {{"state", "suspect"},
