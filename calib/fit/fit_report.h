@@ -78,7 +78,8 @@ struct FitReport {
   std::optional<double> held_out_residual_nT;  ///< the same for poses left out, each with its own best field
   std::vector<OutlierNode> outliers;
   /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
-  double contradicting{0};
+  /// Empty where all were to be kept.
+  std::optional<double> contradicting{};
   std::shared_ptr<const joint::JointFindings> joint;  ///< joint/joint_findings.h; null for the other methods
   Gradient tensor_sd_nT_per_m;  ///< of the tensor by the calibration alone, rms over all attitudes
 };

@@ -83,6 +83,8 @@ TEST_F(EvidenceOfPrograms, AMaskedPoseIsLeftOutByEveryCommandUntilItIsTakenInAga
   EXPECT_EQ(mgt({"undo", file()}).exit_code, 0);
   EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "the mask as it was before";
   EXPECT_EQ(ask({"fit", file(), "--without", "100"}).at("poses"), all - 5);
+  const json kept = ask({"fit", file(), "--keep-all"});
+  EXPECT_THAT(kept.at("checks").dump(), HasSubstr("not asked: every reading was to be kept"));
   EXPECT_EQ(ask({"fit", file()}).at("poses"), all - 4) << "tried, not kept";
 }
 

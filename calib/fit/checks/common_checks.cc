@@ -59,8 +59,11 @@ Check residual_check(const FitReport& r) {
 }  // namespace
 
 Check bad_poses_check(const FitReport& r) {
-  return check("bad poses", r.contradicting <= kMaxBadPoses,
-               fmt::format("{:.0f} % of the poses contradict the others", 100 * r.contradicting),
+  if (!r.contradicting)
+    return check("bad poses", true, "not asked: every reading was to be kept",
+                 fmt::format("{:.0f} % of the poses", 100 * kMaxBadPoses), "fit without --keep-all");
+  return check("bad poses", *r.contradicting <= kMaxBadPoses,
+               fmt::format("{:.0f} % of the poses contradict the others", 100 * *r.contradicting),
                fmt::format("{:.0f} % of the poses", 100 * kMaxBadPoses),
                r.outliers.empty()
                    ? "so many contradict that none was left out: look for a disturbance, a loose "

@@ -10,8 +10,8 @@ inline constexpr int kMaxIterations = 200;
 /// Predicted fall by the next step at which a solution counts as the minimum; a calibration that moves
 /// chi-square by so little moves by 3e-5 of its standard deviation.
 inline constexpr double kConverged = 1e-9;
-/// The same for a recording, whose chi-square is summed over tens of thousands of readings; moves by 1e-3 of
-/// a standard deviation.
+/// The same for a recording, whose chi-square is summed over tens of thousands of readings: a calibration
+/// that moves it by so little moves by 1e-3 of its standard deviation.
 inline constexpr double kRecordingConverged = 1e-6;
 /// The same for a search that only compares solutions.
 inline constexpr double kNearlyConverged = 0.1;

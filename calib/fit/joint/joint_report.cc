@@ -111,7 +111,6 @@ void fill_statistics(const JointFit& fit, const Reduced& equations, FitReport& r
   report.table.dof = fit.dof_table;
   report.table.sd_rad = fit.table_sd_rad;
   report.outliers = fit.outliers;
-  report.contradicting = fit.contradicting;
   report.site = site_of(fit);
   report.tensor_sd_nT_per_m =
       calibration_tensor_sd(fit.state.sensors, fit.problem.geometry, fit.covariance, report.site.f_nT);
@@ -220,6 +219,7 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   compare_methods(*readings, with_field, *fit, report);
   report.check_poses = errors_of_check_poses(table, *joint, *fit);
   report.table.stated_sd_rad = options.table_sd_rad;
+  if (options.most_left_out > 0) report.contradicting = fit->contradicting;
   report.summary = summary_of(*fit, equations.cost.total());
   report.joint = std::make_shared<const JointFindings>(JointFindings{
       .gauge = fit->gauge,

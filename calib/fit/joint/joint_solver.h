@@ -70,9 +70,9 @@ struct JointSolution {
   bool slow_progress{false};  ///< Termination::slow_progress
 };
 
-/// Stops at `enough`. Refuses when it does not get there, when a stop is requested (ErrorCode::state), or
-/// when the information is not positive definite (which parameters that is about says identifiability.h);
-/// `unsettled` then holds how far it came.
+/// Stops at `enough`, of a recording without angles at kRecordingConverged if that is more. Refuses when it
+/// does not get there, when a stop is requested (ErrorCode::state), or when the information is not positive
+/// definite (which parameters that is about says identifiability.h); `unsettled` then holds how far it came.
 [[nodiscard]] Result<JointSolution> solve(const JointProblem& problem, JointState start,
                                           double enough = kConverged, JointState* unsettled = nullptr);
 

@@ -182,7 +182,8 @@ Result<FitReport> two_step_report(const PoseTable& table, const FitOptions& opti
   report.held_out = hold_out(*readings, options, c.geometry);
   report.halves = compare_halves(*readings, *fitted, c.geometry);
   report.outliers = left_out_nodes(*all, agreeing, *fitted);
-  report.contradicting = static_cast<double>(agreeing.left_out.size()) / static_cast<double>(all->poses());
+  if (options.most_left_out > 0)
+    report.contradicting = static_cast<double>(agreeing.left_out.size()) / static_cast<double>(all->poses());
   report.table.stated_sd_rad = options.table_sd_rad;
   return report;
 }

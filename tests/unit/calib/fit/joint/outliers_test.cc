@@ -55,10 +55,12 @@ TEST(Outliers, AreNoneWhereAllIsToBeKept) {
     const auto some = method_choice::fit(table, options);
     ASSERT_TRUE(some);
     EXPECT_FALSE(some->outliers.empty());
+    EXPECT_TRUE(some->contradicting);
     options.most_left_out = 0;
     const auto all = method_choice::fit(table, options);
     ASSERT_TRUE(all);
     EXPECT_TRUE(all->outliers.empty());
+    EXPECT_FALSE(all->contradicting) << "nothing was asked";
     EXPECT_GT((all->calibration.sensors[0].offset_nT - some->calibration.sensors[0].offset_nT).norm(), 1);
   }
 }
