@@ -7,7 +7,7 @@
 
 namespace mgtd::daemon::store {
 
-/// A PlacedFile is a file, and where the sensors stand that it is of.
+/// A PlacedFile is a file together with the places of the sensors that it was made with.
 struct PlacedFile {
   std::string name;
   calib::sensor::Geometry places;

@@ -81,7 +81,8 @@ int main(int argc, char** argv) {
         "# The discovery benchmark\n\nEach section is written by the command that stands at its head "
         "(defaults: 1000 clean runs, 60 of each cell, 2000 draws). 157 poses of the Table 6 rig (36 level, "
         "121 random), 0.05 nT of noise a pose and axis, table angles to 0.1 degrees, a scalar reference, "
-        "temperatures up and down by three degrees, a motor current and a battery that runs down. The laws "
+        "temperatures up and down by three degrees (in one section up once by six), a motor current and a "
+        "battery that runs down. The laws "
         "are written once more in `tests/discovery/unknown_law.cc`. Intervals are 95 % (Wilson).\n\n";
     for (const Section& section : sections(extent)) {
       if (std::find(only.begin(), only.end(), section.name) == only.end()) {
