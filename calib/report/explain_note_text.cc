@@ -122,11 +122,18 @@ std::string text(const criticism::search::LostInWandering& n) {
       n.effect, n.where, n.d, stats::p_phrase(n.log10_p_of_fit));
 }
 
-std::string text(const criticism::search::StepTookLittle& n) {
+std::string text(const criticism::search::TookLittle& n) {
   return fmt::format(
-      "{} is not named: it would lower the residual from {:.3g} to {:.3g} nT only, and so many instants were "
-      "tried that beside so much that is unexplained one does so by chance",
-      n.effect, n.before_nT, n.after_nT);
+      "{} ({}) is not named: it lowers the residual from {:.3g} to {:.3g} nT only, and with so much "
+      "unexplained {:.1f} sigma come about by chance",
+      n.effect, n.where, n.before_nT, n.after_nT, n.d);
+}
+
+std::string text(const criticism::search::FarAboveNoise& n) {
+  return fmt::format(
+      "the residual stays at {:.3g} nT, far above the noise of {:.3g} nT: what else is there has no shape "
+      "that a test here sees",
+      n.residual_nT, n.noise_nT);
 }
 
 std::string text(const criticism::search::LawOfNoLibrary& n) {

@@ -140,6 +140,11 @@ std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit,
 
 }  // namespace
 
+bool stays_far_above_noise(const ExplainReport& report, const tests::Criticism& last) {
+  const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
+  return report.noise.known && fit.noise_inflation > 1 && !last.noise.wandering.any();
+}
+
 Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                  std::vector<ExplainNote>& notes) {
   const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
@@ -147,9 +152,15 @@ Finding conclude(const ExplainReport& report, const Asked& first, const tests::C
     notes.push_back(*std::move(why));
     return Finding::bad_data;
   }
-  if (report.rounds.empty()) return last.rejects() ? Finding::unknown : Finding::pass;
+  const Finding open = report.rounds.empty() ? Finding::unknown : Finding::partial;
+  if (last.rejects()) return open;
+  if (stays_far_above_noise(report, last)) {
+    const double left_nT = report.rounds.empty() ? report.residual_nT : report.rounds.back().rms_after_nT;
+    notes.emplace_back(FarAboveNoise{left_nT, report.noise_nT});
+    return open;
+  }
+  if (report.rounds.empty()) return Finding::pass;
   const Round& round = report.rounds.front();
-  if (last.rejects()) return Finding::partial;
   if (auto remains = lack_of_fit_that_remains(report, last)) {
     notes.push_back(*std::move(remains));
     return Finding::partial;

@@ -166,9 +166,10 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
     take_back(found, search, out);
     if (found.whole_sensor() || !add_rounds(options.rounds, search, out)) break;
   }
+  take_back_what_took_little(search, out);
+  if (criticism.maps.empty()) tests::look_at_maps(criticism);
   take_back_beside_unknown_laws(search.unknown, criticism, out);
   const bool wandering_describes = take_back_lost_in_wandering(criticism.noise, out);
-  take_back_steps_that_took_little(criticism, out);
   keep_names_found_again(out);
   close_alternatives_that_were_added(out);
   note_absurd_sizes(search, criticism, out);
@@ -181,9 +182,10 @@ Result<ExplainReport> explained(const PoseTable& table, const ExplainOptions& op
   share_what_fell(out);
   out.maps_left = described ? out.maps : criticism.maps;
   out.model = out.rounds.empty() ? search.given : out.rounds.back().model;
-  out.left = !criticism.rejects() && search.unknown.empty() && !wandering_describes ? Finding::pass
-             : criticism.rejects_named()                                            ? Finding::partial
-                                                                                    : Finding::unknown;
+  const bool nothing_left = !criticism.rejects() && !stays_far_above_noise(out, criticism);
+  out.left = nothing_left && search.unknown.empty() && !wandering_describes ? Finding::pass
+             : criticism.rejects_named()                                    ? Finding::partial
+                                                                            : Finding::unknown;
   out.finding = conclude(out, first, criticism, out.notes);
   if (out.finding == Finding::bad_data) {
     condemn(search, out);
@@ -226,7 +228,7 @@ const Round* ExplainReport::open_round() const {
 /// pose during whose dwell the step came.
 Result<ExplainReport> explain(const PoseTable& table, const ExplainOptions& options) {
   constexpr double kFew = 0.05;
-  auto out = explained(table, options, fit::joint::JointOptions().most_left_out);
+  auto out = explained(table, options, options.fit.most_left_out);
   if (!out || !may_be_a_law(*out->fit)) return out;
   for (const double most_left_out : {0.0, kFew}) {
     if (most_left_out >= out->fit->contradicting) break;

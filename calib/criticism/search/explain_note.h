@@ -85,10 +85,15 @@ struct LostInWandering {
   double d{0};               ///< by which it stood out
   double log10_p_of_fit{0};  ///< that its coefficients are zero
 };
-/// A step in time that took next to nothing of a residual far above the noise.
-struct StepTookLittle {
-  std::string effect;
+/// It took next to nothing of a residual far above the noise.
+struct TookLittle {
+  std::string effect, where;
+  double d{0};                       ///< by which it stood out
   double before_nT{0}, after_nT{0};  ///< residual without and with it
+};
+/// The residual stays far above the noise, without a shape that a test sees.
+struct FarAboveNoise {
+  double residual_nT{0}, noise_nT{0};
 };
 struct LawOfNoLibrary {
   std::string where;
@@ -99,7 +104,7 @@ using ExplainNote =
     std::variant<SensorsMirrored, TableAnglesContradict, TableAnglesRough, PosesContradict, NoiseOverstated,
                  ResidualWithoutLaw, SensorsExchanged, TablePathUnknown, ExcessRemains, FallNotAsPredicted,
                  LackOfFitRemains, SizeTooSmall, StepsFollowCurve, EvidenceOfOnePose, FitWithEffectFailed,
-                 SizeUnusual, SizeBeyondAll, DescribesRecording, LostInWandering, StepTookLittle,
+                 SizeUnusual, SizeBeyondAll, DescribesRecording, LostInWandering, TookLittle, FarAboveNoise,
                  LawOfNoLibrary>;
 
 }  // namespace mgtd::calib::criticism::search

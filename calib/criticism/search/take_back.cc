@@ -130,21 +130,36 @@ bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& 
   return any && !report.noise.wandering.any();
 }
 
-void take_back_steps_that_took_little(const tests::Criticism& last, ExplainReport& report) {
+std::size_t rounds_that_count(const ExplainReport& report, const tests::NoiseModel& last) {
   constexpr double kNearlyAll = 0.9;  // of the square that is beyond the noise
-  constexpr double kFarAbove = 3;     // times the noise
-  while (last.rejects() && report.noise.known && !report.rounds.empty()) {
-    const Round& round = report.rounds.back();
-    const double noise_nT2 = report.noise_nT * report.noise_nT,
-                 before_nT2 = round.rms_before_nT * round.rms_before_nT - noise_nT2,
-                 after_nT2 = round.rms_after_nT * round.rms_after_nT - noise_nT2;
-    if (!round.added.effect.ends_with(".step") || round.rms_after_nT < kFarAbove * report.noise_nT ||
-        after_nT2 < kNearlyAll * before_nT2)
+  constexpr double kSigmas = 8;       // from here on the right law of the library stands first, and alone
+  const auto beyond = [&](double rms_nT) { return rms_nT * rms_nT - report.noise_nT * report.noise_nT; };
+  std::size_t count = report.rounds.size();
+  while (count > 0 && report.noise.known && !last.wandering.any()) {
+    const Round& round = report.rounds[count - 1];
+    if (!(round.fit->noise_inflation > 1) || round.added.d >= kSigmas ||
+        beyond(round.rms_after_nT) < kNearlyAll * beyond(round.rms_before_nT))
       break;
-    report.notes.emplace_back(StepTookLittle{round.added.effect, round.rms_before_nT, round.rms_after_nT});
-    report.rounds.pop_back();
+    --count;
   }
-  if (report.rounds.empty()) report.next.clear();
+  return count;
+}
+
+void take_back_what_took_little(EffectSearch& search, ExplainReport& report) {
+  const std::size_t count = rounds_that_count(report, search.criticism.noise);
+  if (count == report.rounds.size()) return;
+  const Round* const open = report.open_round();
+  if (open != nullptr && open >= &report.rounds[count]) report.next.clear();
+  for (std::size_t i = count; i < report.rounds.size(); ++i) {
+    const Round& round = report.rounds[i];
+    report.notes.emplace_back(TookLittle{round.added.effect, round.added.where, round.added.d,
+                                         round.rms_before_nT, round.rms_after_nT});
+  }
+  search.joint.effects = count == 0 ? search.given : report.rounds[count - 1].model;
+  report.rounds.resize(count);
+  if (count == 0) report.next.clear();
+  if (const auto before = fit::joint::fit_joint_at_size(search.table, search.joint))
+    search.judge_anew(*before);
 }
 
 void keep_names_found_again(ExplainReport& report) {

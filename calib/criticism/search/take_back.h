@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <set>
 #include <string>
 
@@ -27,9 +28,14 @@ void take_back_beside_unknown_laws(const std::set<std::string>& closed, const te
 /// wandering only describes it.
 [[nodiscard]] bool take_back_lost_in_wandering(const tests::NoiseModel& noise, ExplainReport& report);
 
-/// Takes the last rounds back as long as each is a step in time that leaves nearly all of a residual which is
-/// far above the noise and still has a shape: of the instants that were tried one fits the shape by chance.
-void take_back_steps_that_took_little(const tests::Criticism& last, ExplainReport& report);
+/// Rounds from the first on that may stay, where the last ones took next to nothing of a residual that is far
+/// above the noise: the tests take such a residual for noise, and what stands out of it by less than eight
+/// standard deviations may follow its shape by chance. `last`: the tests of the last model; a noise that
+/// wanders is known, and then all may stay.
+[[nodiscard]] std::size_t rounds_that_count(const ExplainReport& report, const tests::NoiseModel& last);
+
+/// Takes the others back, says so in the notes, and judges the model without them.
+void take_back_what_took_little(EffectSearch& search, ExplainReport& report);
 
 /// An effect that is found again once the axis is closed was not a surrogate of its law: the notes do not say
 /// so any more.

@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <set>
-#include <tuple>
+#include <vector>
 
 #include "calib/criticism/search/explain.h"
 #include "calib/report/verdict_text.h"
+#include "tests/blind/hidden_run.h"
 #include "tests/blind/real_kind.h"
 
 namespace mgtd::calib::criticism::search {
@@ -49,34 +52,60 @@ TEST(TakeBack, NothingIsNamedThatTheWanderingMayMake) {
   }
 }
 
+struct AddedRound {
+  const char* effect;
+  double before_nT, after_nT, d;
+};
+
+ExplainReport report_of(const std::vector<AddedRound>& rounds, double noise_inflation) {
+  ExplainReport report;
+  report.noise.known = true;
+  report.noise_nT = 0.02;
+  auto fit = std::make_shared<fit::joint::JointFit>();
+  fit->noise_inflation = noise_inflation;
+  for (const AddedRound& added : rounds) {
+    Round& round = report.rounds.emplace_back();
+    round.added.effect = added.effect;
+    round.added.d = added.d;
+    round.rms_before_nT = added.before_nT, round.rms_after_nT = added.after_nT;
+    round.fit = fit;
+  }
+  return report;
+}
+
 /// Two dipoles a metre and a half away: what gradient and curvature leave of them fits some instant.
-TEST(TakeBack, AStepThatTookNextToNothingIsNotNamed) {
-  const auto rounds_with = [](double step_after_nT) {
-    ExplainReport report;
-    report.noise.known = true;
-    report.noise_nT = 0.02;
-    for (const auto& [effect, before_nT, after_nT] :
-         {std::tuple{"site.gradient", 40.0, 1.51}, std::tuple{"site.step", 1.51, step_after_nT}}) {
-      Round& round = report.rounds.emplace_back();
-      round.added.effect = effect;
-      round.rms_before_nT = before_nT, round.rms_after_nT = after_nT;
-    }
-    return report;
+TEST(TakeBack, WhatTookNextToNothingIsNotNamed) {
+  const AddedRound gradient{"site.gradient", 40, 1.51, 39};
+  const auto kept = [&](const AddedRound& last, double noise_inflation = 75) {
+    return rounds_that_count(report_of({gradient, last}, noise_inflation), {});
   };
-  tests::Criticism last;
-  last.omnibus_log10_p = -30;
-  ASSERT_TRUE(last.rejects());
-  ExplainReport little = rounds_with(1.49);
-  take_back_steps_that_took_little(last, little);
-  ASSERT_EQ(little.rounds.size(), 1U);
-  EXPECT_EQ(little.rounds.front().added.effect, "site.gradient");
-  EXPECT_EQ(std::get<StepTookLittle>(little.notes.front()).effect, "site.step");
-  ExplainReport much = rounds_with(1.2);
-  take_back_steps_that_took_little(last, much);
-  EXPECT_EQ(much.rounds.size(), 2U);
-  ExplainReport all = rounds_with(0.02);
-  take_back_steps_that_took_little(last, all);
-  EXPECT_EQ(all.rounds.size(), 2U);
+  EXPECT_EQ(kept({"site.step", 1.51, 1.49, 6.4}), 1U);
+  EXPECT_EQ(kept({"site.step", 1.51, 1.2, 6.4}), 2U) << "it took much";
+  EXPECT_EQ(kept({"axis.offset.step", 1.51, 1.49, 8.6}), 2U) << "one of twelve axes can take no more";
+  EXPECT_EQ(kept({"site.step", 0.05, 0.049, 6.4}, 1), 2U) << "the noise is that of the dwells";
+  ExplainReport unknown_noise = report_of({gradient, {"site.step", 1.51, 1.49, 6.4}}, 75);
+  unknown_noise.noise.known = false;
+  EXPECT_EQ(rounds_that_count(unknown_noise, {}), 2U);
+  tests::NoiseModel wandering;
+  wandering.wandering.evidence = 10;
+  ASSERT_TRUE(wandering.wandering.any());
+  EXPECT_EQ(rounds_that_count(report_of({gradient, {"site.step", 1.51, 1.49, 6.4}}, 75), wandering), 2U);
+}
+
+/// Of a law that all axes follow at the size of sixty times the noise, one effect or other takes a hundredth.
+TEST(TakeBack, ALawOfAllAxesIsNotExplainedByWhatTakesAHundredth) {
+  PoseTable run = testing::hidden_run({.noise_nT = 0.02}, 3);
+  for (Pose& pose : run.poses)
+    for (std::size_t i = 0; i < kSensors; ++i)
+      for (int a = 0; a < 3; ++a) {
+        const int channel = 3 * static_cast<int>(i + 1) + a;
+        pose.y_nT[i][a] += 1.5 * std::sin((4 + channel % 3) * *pose.azimuth_rad + 3 * *pose.pitch_rad +
+                                          2 * *pose.roll_rad + 1.3 * channel);
+      }
+  const auto r = explain(run, {});
+  ASSERT_TRUE(r) << r.error().text();
+  EXPECT_EQ(r->finding, Finding::unknown) << report::sentence(*r);
+  EXPECT_TRUE(r->named.empty()) << report::sentence(*r);
 }
 
 TEST(TakeBack, ANameThatIsFoundAgainIsNotInTheNotes) {
