@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "calib/criticism/search/temperature_dependence.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
@@ -125,8 +126,9 @@ std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double 
 }
 
 /// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
-/// or a few readings make it. Beside effects that were `named` the poses must contradict each other and the
-/// residual must have longer tails than any law leaves. Empty when it is not so.
+/// or a few readings make it. Beside effects that were `named`, also if they were taken back since, the poses
+/// must contradict each other and the residual must have longer tails than any law leaves. Empty when it is
+/// not so.
 std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit, const tests::Criticism& last,
                                                 bool named) {
   if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
@@ -148,7 +150,10 @@ bool stays_far_above_noise(const ExplainReport& report, const tests::Criticism& 
 Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                  std::vector<ExplainNote>& notes) {
   const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
-  if (auto why = residual_without_law(fit, last, !report.rounds.empty())) {
+  const bool named = !report.rounds.empty() || std::any_of(notes.begin(), notes.end(), [](const auto& note) {
+    return std::holds_alternative<TookLittle>(note);
+  });
+  if (auto why = residual_without_law(fit, last, named)) {
     notes.push_back(*std::move(why));
     return Finding::bad_data;
   }
