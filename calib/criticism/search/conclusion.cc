@@ -144,7 +144,8 @@ std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit,
 
 bool stays_far_above_noise(const ExplainReport& report, const tests::Criticism& last) {
   const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
-  return report.noise.known && fit.noise_inflation > 1 && !last.noise.wandering.any();
+  const bool by_revisits = last.noise.revisits && last.noise.revisits->accounts_for_residual();
+  return report.noise.known && fit.noise_inflation > 1 && !last.noise.wandering.any() && !by_revisits;
 }
 
 Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,

@@ -14,8 +14,8 @@ struct Asked {
   tests::NoiseReference reference;
 };
 
-/// Whether what is left is more than ten times the noise, and nothing that wanders accounts for it: the tests
-/// then take it for noise, and that none of them rejects says nothing.
+/// Whether what is left is more than ten times the noise, and neither wandering offsets nor revisits account
+/// for it: the tests then take it for noise, and that none of them rejects says nothing.
 [[nodiscard]] bool stays_far_above_noise(const ExplainReport& report, const tests::Criticism& last);
 
 [[nodiscard]] Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,

@@ -163,13 +163,12 @@ int noisier_channels(const fit::joint::JointFit& fit) {
 /// even half of it: then it may be the noise that is larger, and only what has a shape speaks of the model.
 bool contradicts_dwells(const Criticism& c) {
   constexpr double kHalf = 0.5;
-  constexpr double kRevisitsAgree_log10_p = -3;
   constexpr double kUnequal = 40;  // chi-square with eleven degrees of freedom where all channels are alike
   const int kNoisier =
       c.tested->problem.channels() / 2;  // fewer: something is with these few, and no noise of the dwells
   const NoiseReference& n = c.noise.reference;
   if (!n.from_dwells() || !c.rejects_omnibus()) return false;
-  if (c.noise.revisits && c.noise.revisits->log10_p < kRevisitsAgree_log10_p) return false;
+  if (c.noise.revisits && !c.noise.revisits->accounts_for_residual()) return false;
   if (noisier_channels(*c.tested) < kNoisier || fit::joint::unequal_noise_evidence(*c.tested) > kUnequal)
     return false;
   double largest = 0;

@@ -29,6 +29,9 @@ struct PureError {
   double ratio{1};          ///< variance between visits over the variance that a pose mean is said to have
   double F{1}, log10_p{0};  ///< lack of fit: the remaining residual against it
   double model_nT{0};       ///< rms that the model misses, beyond the noise
+
+  /// Whether the revisits scatter as much as the whole residual: then the model misses nothing.
+  [[nodiscard]] bool accounts_for_residual() const { return log10_p >= -3; }
 };
 
 struct NoiseModel {

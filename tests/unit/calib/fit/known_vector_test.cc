@@ -7,6 +7,7 @@
 
 #include "calib/report/verdict_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -15,6 +16,7 @@ using testing::explained;
 using testing::fitted;
 using ::testing::HasSubstr;
 using testing::nine_squared_errors;
+
 PoseTable in_a_cage(const std::string& more, std::uint64_t seed) {
   const auto scenario = testing::scenario_of(
       testing::one_sensor(), seed,

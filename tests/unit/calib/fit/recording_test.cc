@@ -8,6 +8,7 @@
 #include "calib/fit/joint/joint_fit.h"
 #include "calib/report/fit_report_text.h"
 #include "tests/unit/calib/fit/fitted_arrays.h"
+
 namespace mgtd::calib {
 namespace {
 
@@ -17,6 +18,7 @@ using testing::fitted;
 using ::testing::HasSubstr;
 using testing::nine_squared_errors;
 using ::testing::Not;
+
 /// As of a magnetometer on a chip.
 constexpr const char* kLargeNoise = "[sensors]\nnoise_nT = 20\n";
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -106,6 +107,26 @@ TEST(TakeBack, ALawOfAllAxesIsNotExplainedByWhatTakesAHundredth) {
   ASSERT_TRUE(r) << r.error().text();
   EXPECT_EQ(r->finding, Finding::unknown) << report::sentence(*r);
   EXPECT_TRUE(r->named.empty()) << report::sentence(*r);
+}
+
+/// Noise twenty times that of the dwells has no shape either, but the revisits of an attitude show it.
+TEST(TakeBack, NoiseThatTheRevisitsShowIsNoLaw) {
+  PoseTable run = testing::hidden_run({.noise_nT = 0.02}, 3);
+  ASSERT_GE(run.poses.size(), 100U);
+  for (std::size_t k = 40; k < 60; ++k) {
+    const Pose& first = run.poses[k - 40];
+    Pose& again = run.poses[k];
+    again.y_nT = first.y_nT, again.f_nT = first.f_nT;
+    again.azimuth_rad = first.azimuth_rad, again.pitch_rad = first.pitch_rad, again.roll_rad = first.roll_rad;
+  }
+  std::mt19937_64 rng(7);
+  std::normal_distribution<double> noise(0, 0.4);
+  for (Pose& pose : run.poses)
+    for (std::size_t i = 0; i < kSensors; ++i)
+      for (int a = 0; a < 3; ++a) pose.y_nT[i][a] += noise(rng);
+  const auto r = explain(run, {});
+  ASSERT_TRUE(r) << r.error().text();
+  EXPECT_EQ(r->finding, Finding::pass) << report::sentence(*r);
 }
 
 TEST(TakeBack, ANameThatIsFoundAgainIsNotInTheNotes) {
