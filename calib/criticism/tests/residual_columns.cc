@@ -15,19 +15,6 @@ namespace {
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-/// Reading less prediction, of what the fit left out too.
-Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit) {
-  const fit::joint::PoseModel model(fit.problem, fit.state);
-  fit::joint::PoseLinear linear;
-  Eigen::MatrixXd out(fit.problem.channels(), static_cast<Eigen::Index>(fit.problem.poses.size()));
-  for (Eigen::Index k = 0; k < out.cols(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
-    out.col(k) = fit.problem.poses[at].y_nT - linear.y_nT;
-  }
-  return out;
-}
-
 /// What was left out has no residual in units of noise, and what is made of it has none either.
 void hide_left_out(const fit::joint::JointFit& fit, ResidualColumns& out) {
   for (std::size_t k = 0; k < fit.problem.poses.size(); ++k) {
@@ -60,6 +47,18 @@ Eigen::VectorXd closure_chi2(const fit::joint::JointFit& fit, const Eigen::Matri
 }
 
 }  // namespace
+
+Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit) {
+  const fit::joint::PoseModel model(fit.problem, fit.state);
+  fit::joint::PoseLinear linear;
+  Eigen::MatrixXd out(fit.problem.channels(), static_cast<Eigen::Index>(fit.problem.poses.size()));
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
+    out.col(k) = fit.problem.poses[at].y_nT - linear.y_nT;
+  }
+  return out;
+}
 
 Result<ResidualColumns> residual_columns(const fit::joint::JointFit& fit) {
   auto influence = fit::joint::pose_influences(fit);

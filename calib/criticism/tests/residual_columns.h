@@ -27,6 +27,9 @@ struct ResidualColumns {
   std::vector<fit::joint::PoseInfluence> influence{};
 };
 
+/// Reading less prediction, of what the fit left out too: 3N x P.
+[[nodiscard]] Eigen::MatrixXd residuals_nT(const fit::joint::JointFit& fit);
+
 [[nodiscard]] Result<ResidualColumns> residual_columns(const fit::joint::JointFit& fit);
 
 }  // namespace mgtd::calib::criticism::tests

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calib/criticism/tests/residual_columns.h"
 #include "calib/criticism/tests/whitener.h"
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/stats/boost_policy.h"
@@ -18,17 +19,10 @@ namespace {
 /// Signed, 3N x P, in units of their own standard deviations; 0 where left out.
 Eigen::MatrixXd own_units(const fit::joint::JointFit& fit) {
   const fit::joint::PoseResiduals sizes = fit::joint::pose_residuals(fit.problem, fit.state);
-  const fit::joint::PoseModel model(fit.problem, fit.state);
-  fit::joint::PoseLinear linear;
-  Eigen::MatrixXd out(fit.problem.channels(), static_cast<Eigen::Index>(fit.problem.poses.size()));
-  for (Eigen::Index k = 0; k < out.cols(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    model.linearise(fit.problem.poses[at], fit.state.nuisances[at], linear);
-    for (Eigen::Index c = 0; c < out.rows(); ++c) {
-      const double size = fit.noise_inflation * static_cast<double>(sizes.t(c, k));
-      out(c, k) = std::copysign(size, fit.problem.poses[at].y_nT[c] - linear.y_nT[c]);
-    }
-  }
+  Eigen::MatrixXd out = residuals_nT(fit);
+  for (Eigen::Index k = 0; k < out.cols(); ++k)
+    for (Eigen::Index c = 0; c < out.rows(); ++c)
+      out(c, k) = std::copysign(fit.noise_inflation * static_cast<double>(sizes.t(c, k)), out(c, k));
   return out;
 }
 
