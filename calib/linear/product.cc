@@ -30,6 +30,9 @@ class Turn {
 
 using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
+/// To arrange an A of so few numbers for BLAS takes longer than the product.
+constexpr Eigen::Index kSmall = 64;
+
 /// The leading dimension that BLAS takes, at least one.
 template <class Matrix>
 blasint lead(const Matrix& A) {
@@ -71,13 +74,31 @@ Eigen::MatrixXf transposed_product(const Eigen::Ref<const Eigen::MatrixXf>& A,
 }
 
 void set_product(const Columns& A, const Columns& B, Eigen::MatrixXd& C) {
-  constexpr Eigen::Index kSmall = 64;  // to arrange such an A for BLAS takes longer than the product
   if (A.size() <= kSmall) {
     C = A.lazyProduct(B);
     return;
   }
   const Turn turn;
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
+              A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
+}
+
+void set_product(const Columns& A, const RowByRow& B, RowByRow& C) {
+  if (A.size() <= kSmall) {
+    constexpr Eigen::Index kTogether = 8;  // columns whose sums stay in registers
+    Eigen::Index from = 0;
+    for (; from + kTogether <= B.cols(); from += kTogether)
+      for (Eigen::Index i = 0; i < A.rows(); ++i) {
+        Eigen::Matrix<double, 1, kTogether> sum = A(i, 0) * B.row(0).segment<kTogether>(from);
+        for (Eigen::Index k = 1; k < A.cols(); ++k) sum += A(i, k) * B.row(k).segment<kTogether>(from);
+        C.row(i).segment<kTogether>(from) = sum;
+      }
+    const Eigen::Index rest = B.cols() - from;
+    C.rightCols(rest) = A.lazyProduct(B.rightCols(rest));
+    return;
+  }
+  const Turn turn;
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, size(C.rows()), size(C.cols()), size(A.cols()), 1,
               A.data(), lead(A), B.data(), lead(B), 0, C.data(), lead(C));
 }
 

@@ -21,6 +21,9 @@ void add_gram(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::MatrixXd& G);
 /// C becomes A B; it has that size already.
 void set_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
                  Eigen::MatrixXd& C);
+/// The same where B and C lie row by row: of a small A and many columns the fastest.
+using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+void set_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const RowByRow& B, RowByRow& C);
 /// C becomes C - A B.
 void subtract_product(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
                       Eigen::MatrixXd& C);

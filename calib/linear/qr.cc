@@ -49,19 +49,27 @@ Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X) {
 
 struct TriangularisingRotation::Work {
   Plain qr;
-  Eigen::MatrixXd Q, rotation;
+  Eigen::MatrixXd Q, rows, triangle;
   Eigen::VectorXd row;
 };
 
 TriangularisingRotation::TriangularisingRotation() : work_(std::make_unique<Work>()) {}
 TriangularisingRotation::~TriangularisingRotation() = default;
 
-const Eigen::MatrixXd& TriangularisingRotation::of(const Eigen::Ref<const Eigen::MatrixXd>& X) {
+void TriangularisingRotation::turn(const Eigen::Ref<const Eigen::MatrixXd>& X) {
   work_->qr.compute(X);
-  work_->row.resize(X.rows());
-  work_->qr.householderQ().evalTo(work_->Q, work_->row);
-  work_->rotation = work_->Q.transpose();
-  return work_->rotation;
+  work_->triangle = work_->qr.matrixQR().topRows(X.cols()).triangularView<Eigen::Upper>();
+}
+
+const Eigen::MatrixXd& TriangularisingRotation::triangle() const { return work_->triangle; }
+
+const Eigen::MatrixXd& TriangularisingRotation::rows_from(Eigen::Index first) {
+  const Eigen::Index n = work_->qr.rows();
+  work_->Q.setZero(n, n - first);
+  work_->Q.bottomRows(n - first).setIdentity();
+  work_->qr.householderQ().applyThisOnTheLeft(work_->Q, work_->row);
+  work_->rows = work_->Q.transpose();
+  return work_->rows;
 }
 
 }  // namespace mgtd::calib::linear

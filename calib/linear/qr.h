@@ -25,7 +25,8 @@ namespace mgtd::calib::linear {
 /// Orthonormal basis of what is perpendicular to all columns.
 [[nodiscard]] Eigen::MatrixXd complement_of(const Eigen::MatrixXd& X);
 /// Q' of X = Q R, square: the first rows of Q' X, as many as X has columns, hold the triangle R, the others
-/// are zero. For many small X of one size, one after the other: allocates for the first alone.
+/// are zero. For many small X of one size, one after the other: allocates for the first alone. What it gives
+/// holds until the next X.
 class TriangularisingRotation {
  public:
   TriangularisingRotation();
@@ -33,8 +34,10 @@ class TriangularisingRotation {
   TriangularisingRotation(const TriangularisingRotation&) = delete;
   TriangularisingRotation& operator=(const TriangularisingRotation&) = delete;
 
-  /// Holds until the next call.
-  [[nodiscard]] const Eigen::MatrixXd& of(const Eigen::Ref<const Eigen::MatrixXd>& X);
+  void turn(const Eigen::Ref<const Eigen::MatrixXd>& X);
+  /// Of the last X: R, as wide as X, and the rows of Q' from one on.
+  [[nodiscard]] const Eigen::MatrixXd& triangle() const;
+  [[nodiscard]] const Eigen::MatrixXd& rows_from(Eigen::Index first);
 
  private:
   struct Work;

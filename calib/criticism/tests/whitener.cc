@@ -18,7 +18,7 @@ constexpr double kStart_nT = 1e-4;
 /// Of a step between two poses at one time.
 constexpr double kLeastStep_nT = 1e-6;
 
-/// ln det T'T of the triangle at the top.
+/// ln det T'T.
 double log_det_of(const Eigen::MatrixXd& triangle) {
   double out = 0;
   for (Eigen::Index i = 0; i < triangle.cols(); ++i)
@@ -49,45 +49,51 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
   const Eigen::Index W = walks(), U = unknowns();
   const double fresh = 1 / std::sqrt(1 - rho * rho);
   /// What the rows of a pose, its readings times a factor, feel of the walks and of its nuisances.
-  const auto felt = [&](Eigen::Index pose, const Eigen::VectorXd& factor) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(pose_rows_, W + fit::joint::kNuisances);
+  const auto feel = [&](Eigen::Index pose, const Eigen::VectorXd& factor, Eigen::MatrixXd& out) {
+    out.setZero(pose_rows_, W + fit::joint::kNuisances);
     for (Eigen::Index i = 0; i < W; ++i) {
       const int c = walking_[static_cast<std::size_t>(i)];
       out(c, i) = factor[c] * problem.poses[static_cast<std::size_t>(pose)].weight[c];
     }
     out.rightCols<fit::joint::kNuisances>() = nuisance.middleRows(pose * pose_rows_, pose_rows_);
     out.topRightCorner(channels_, fit::joint::kNuisances).array().colwise() *= factor.array();
-    return out;
   };
   linear::TriangularisingRotation of_nuisances, of_last, of_left;
-  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U);
+  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U), own, own_before;
+  Eigen::MatrixXd last(U + W + coupled(), U), mine(U + W + coupled(), U), left(W + own_rows(), U);
+  Eigen::VectorXd now(channels_), before(channels_);
   for (std::size_t k = 0; k < order_.size(); ++k) {
     Step& step = steps_[k];
     const auto& pose = problem.poses[static_cast<std::size_t>(order_[k])];
     // Readings, scalar reference, and what stands in the place of the attitude, less the pose's own unknowns.
     rank_ +=
         static_cast<int>((pose.weight.array() > 0).count()) + (pose.f_weight > 0 ? 1 : 0) + pose.beside();
-    Eigen::VectorXd now = Eigen::VectorXd::Ones(channels_), before = Eigen::VectorXd::Zero(channels_);
+    now.setOnes();
+    before.setZero();
     const auto* previous = k > 0 ? &problem.poses[static_cast<std::size_t>(order_[k - 1])] : nullptr;
     if (previous != nullptr && remembers()) {
       const auto both = (pose.weight.array() > 0 && previous->weight.array() > 0).cast<double>();
       now = 1 + both * (fresh - 1);
       before = -rho * fresh * both;
     }
-    Eigen::MatrixXd own = felt(order_[k], now);
+    feel(order_[k], now, own);
     if (!remembers()) {
-      const auto nuisances = own.rightCols<fit::joint::kNuisances>();
-      const Eigen::MatrixXd& turn = of_nuisances.of(nuisances);
-      log_det_ += log_det_of(turn.topRows(fit::joint::kNuisances) * nuisances);
-      step.alone = turn.bottomRows(own_rows());
+      of_nuisances.turn(own.rightCols<fit::joint::kNuisances>());
+      log_det_ += log_det_of(of_nuisances.triangle());
+      step.alone = of_nuisances.rows_from(fit::joint::kNuisances);
       own = step.alone * own.leftCols(W);
+    } else {
+      step.now = now, step.before = before;
     }
-    if (remembers()) step.now = std::move(now), step.before = before;
     if (U == 0) continue;
-    Eigen::MatrixXd last = Eigen::MatrixXd::Zero(U + W + coupled(), U), mine = last;
+    last.setZero();
+    mine.setZero();
     last.topRows(U) = carried;
     if (previous != nullptr) {
-      if (remembers()) last.bottomRows(channels_) = felt(order_[k - 1], before).topRows(channels_);
+      if (remembers()) {
+        feel(order_[k - 1], before, own_before);
+        last.bottomRows(channels_) = own_before.topRows(channels_);
+      }
       const double root_h = std::sqrt(std::max(0.0, pose.t_h - previous->t_h));
       for (Eigen::Index i = 0; i < W; ++i) {
         const double step_nT = nT_per_sqrt_h[walking_[static_cast<std::size_t>(i)]] * root_h;
@@ -99,14 +105,16 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
       for (Eigen::Index i = 0; i < W; ++i) mine(U + i, i) = 1 / kStart_nT;
     }
     mine.bottomRows(coupled()) = own.topRows(coupled());
-    const Eigen::MatrixXd& turn = of_last.of(last);
-    if (previous != nullptr) log_det_ += log_det_of(turn * last);
+    of_last.turn(last);
+    if (previous != nullptr) log_det_ += log_det_of(of_last.triangle());
+    const Eigen::MatrixXd& below = of_last.rows_from(U);
     step.first.resize(W + coupled(), U + coupled());
-    step.first << turn.bottomLeftCorner(W + coupled(), U), turn.bottomRightCorner(W + coupled(), coupled());
-    Eigen::MatrixXd left(W + own_rows(), U);
-    left << turn.bottomRows(W + coupled()) * mine, own.bottomRows(own_rows() - coupled());
-    step.second = of_left.of(left);
-    carried = (step.second * left).topRows(U);
+    step.first << below.leftCols(U), below.rightCols(coupled());
+    left.topRows(W + coupled()).noalias() = below * mine;
+    left.bottomRows(own_rows() - coupled()) = own.bottomRows(own_rows() - coupled());
+    of_left.turn(left);
+    step.second = of_left.rows_from(0);
+    carried = of_left.triangle();
     if (k + 1 == order_.size()) log_det_ += log_det_of(carried);
   }
 }
@@ -184,7 +192,8 @@ Eigen::MatrixXd Whitener::apply_transposed(const Eigen::MatrixXd& X) const {
 
 Whitener::Walk::Walk(const Whitener& whitener, Eigen::Index columns) : whitener_(whitener) {
   const Eigen::Index U = whitener.unknowns(), W = whitener.walks(), coupled = whitener.coupled();
-  in_ = Eigen::MatrixXd::Zero(U + coupled, columns);
+  given_.resize(whitener.pose_rows_, columns);
+  in_ = linear::RowByRow::Zero(U + coupled, columns);
   turned_.resize(W + coupled, columns);
   own_.resize(whitener.own_rows(), columns);
   left_.resize(W + whitener.own_rows(), columns);
@@ -194,13 +203,14 @@ Whitener::Walk::Walk(const Whitener& whitener, Eigen::Index columns) : whitener_
 void Whitener::Walk::next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Ref<Eigen::MatrixXd> out) {
   const Step& step = whitener_.steps_[at_];
   const Eigen::Index U = whitener_.unknowns(), coupled = whitener_.coupled();
+  given_ = rows;
   if (whitener_.remembers()) {
-    in_.bottomRows(coupled) = step.now.asDiagonal() * rows.topRows(coupled);
+    in_.bottomRows(coupled) = step.now.asDiagonal() * given_.topRows(coupled);
     if (at_ > 0) in_.bottomRows(coupled) += step.before.asDiagonal() * before_;
-    before_ = rows.topRows(coupled);
-    own_.bottomRows(own_.rows() - coupled) = rows.bottomRows(own_.rows() - coupled);
+    before_ = given_.topRows(coupled);
+    own_.bottomRows(own_.rows() - coupled) = given_.bottomRows(own_.rows() - coupled);
   } else {
-    linear::set_product(step.alone, rows, own_);
+    linear::set_product(step.alone, given_, own_);
   }
   ++at_;
   if (U == 0) {
@@ -208,7 +218,8 @@ void Whitener::Walk::next(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::
     return;
   }
   linear::set_product(step.first, in_, turned_);
-  left_ << turned_, own_.bottomRows(own_.rows() - coupled);
+  left_.topRows(turned_.rows()) = turned_;
+  left_.bottomRows(left_.rows() - turned_.rows()) = own_.bottomRows(own_.rows() - coupled);
   linear::set_product(step.second, left_, emitted_);
   in_.topRows(U) = emitted_.topRows(U);
   out = emitted_.bottomRows(out.rows());

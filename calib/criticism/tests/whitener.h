@@ -5,6 +5,7 @@
 
 #include "calib/criticism/tests/rows.h"
 #include "calib/fit/joint/wandering.h"
+#include "calib/linear/product.h"
 
 /// A Whitener takes the four nuisances of every pose, and the correlation between poses, out of a linearised
 /// joint fit.
@@ -47,8 +48,9 @@ class Whitener {
    private:
     const Whitener& whitener_;
     std::size_t at_{0};
-    Eigen::MatrixXd own_, in_, turned_, left_, emitted_;
-    Eigen::MatrixXd before_;  ///< readings' rows of the last pose
+    /// A pose has few rows of many columns: what is done to a row is done to its columns side by side.
+    linear::RowByRow given_, own_, in_, turned_, left_, emitted_;
+    linear::RowByRow before_;  ///< readings' rows of the last pose
   };
 
   [[nodiscard]] double rho() const { return rho_; }

@@ -50,7 +50,8 @@ TEST(Bases, ColumnsThatAreRoundingAgainstTheirLengthAreLeftOut) {
 
 TEST(TriangularisingRotation, LeavesNothingBelowTheTriangle) {
   TriangularisingRotation rotation;
-  const Eigen::MatrixXd T = rotation.of(kLine) * kLine;
+  rotation.turn(kLine);
+  const Eigen::MatrixXd T = rotation.rows_from(0) * kLine;
   ASSERT_EQ(T.rows(), 4);
   EXPECT_NEAR(T.col(0).squaredNorm(), 4, 1e-13);
   EXPECT_NEAR(T(1, 0), 0, 1e-14);
@@ -62,10 +63,16 @@ TEST(TriangularisingRotation, IsThatOfEachMatrixAndARotation) {
   TriangularisingRotation rotation;
   const Eigen::MatrixXd wide{{2, 1, 0}, {1, 3, 1}, {0, 1, 4}, {1, 1, 1}};
   for (const Eigen::MatrixXd& X : {kLine, wide, Eigen::MatrixXd(3 * kLine.array() + 1), wide}) {
-    const Eigen::MatrixXd Q = rotation.of(X);
+    rotation.turn(X);
+    const Eigen::MatrixXd Q = rotation.rows_from(0);
     EXPECT_TRUE((Q * Q.transpose()).isIdentity(1e-13));
+    EXPECT_TRUE(rotation.triangle().isUpperTriangular(0)) << rotation.triangle();
+    EXPECT_TRUE(((Q * X).topRows(X.cols()) - rotation.triangle()).isZero(1e-13));
     EXPECT_TRUE((Q * X).bottomRows(X.rows() - X.cols()).isZero(1e-13));
-    EXPECT_EQ(Q, TriangularisingRotation().of(X));
+    EXPECT_EQ(Q.bottomRows(X.rows() - X.cols()), rotation.rows_from(X.cols()));
+    TriangularisingRotation fresh;
+    fresh.turn(X);
+    EXPECT_EQ(Q, fresh.rows_from(0));
   }
 }
 
