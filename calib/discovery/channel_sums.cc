@@ -6,12 +6,12 @@
 
 #include "calib/criticism/tests/rows.h"
 #include "calib/effects/laws/site_gradient.h"
+#include "calib/linear/parts.h"
 #include "calib/linear/product.h"
 #include "calib/linear/symmetric_eigen.h"
 
 namespace mgtd::calib::discovery {
 namespace tests = criticism::tests;
-
 double one_over_length_left(double left2, double about_mean2, double whole2, double share) {
   const double least = std::max(share * share * about_mean2, kRounding * kRounding * whole2);
   return left2 > least && left2 > 0 ? 1 / std::sqrt(std::max(left2, 1e-300)) : 0;
@@ -134,6 +134,16 @@ void ChannelSums::Linearised::set_before() {
   }
 }
 
+void ChannelSums::Linearised::set_each_pose() {
+  const tests::Whitener& whitener = projection->whitener();
+  const Eigen::Index poses = rows.rows() / whitener.pose_rows();
+  each_pose.resize(static_cast<std::size_t>(channels));
+  linear::for_each_part(each_pose.size(), [&](std::size_t c) {
+    const Eigen::MatrixXd of_pose = Eigen::MatrixXd::Identity(poses, poses);
+    each_pose[c] = linear::gram(whitener.apply(spread(static_cast<int>(c), of_pose)) / unit);
+  });
+}
+
 ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual& residual)
     : poses_(residual.poses()),
       channels_(fit.problem.channels()),
@@ -143,9 +153,14 @@ ChannelSums::ChannelSums(const fit::joint::JointFit& fit, const tests::Residual&
                    .unit = residual.unit(),
                    .rows = unit_rows(fit.problem, fit.state),
                    .channels = channels_,
-                   .before = {}};
+                   .before = {},
+                   .each_pose = {}};
   total_ = static_cast<int>(model.rows.cols());
-  if (!correlated_) model.set_before();
+  if (!correlated_) {
+    model.set_before();
+  } else if (fit.problem.sensors() == 1) {
+    model.set_each_pose();
+  }
   const Eigen::Index n = poses_ * residual.rows_per_pose(), p = residual.basis().cols();
   Eigen::MatrixXd both(n, p + 1);
   both << residual.basis().topRows(n), residual.value().head(n);
@@ -209,9 +224,12 @@ Eigen::MatrixXd ChannelSums::taken_up_by_laws(int c, const Eigen::MatrixXd& g) c
 Eigen::MatrixXd ChannelSums::products(int c, int d) const {
   const Eigen::MatrixXd &of_c = taken_[static_cast<std::size_t>(c)],
                         &of_d = taken_[static_cast<std::size_t>(d)];
-  if (correlated_)
-    return before_projection(c, d, Eigen::MatrixXd::Identity(poses_, poses_)) -
+  if (correlated_) {
+    const auto& held = fit_->each_pose;
+    return (c == d && !held.empty() ? held[static_cast<std::size_t>(c)]
+                                    : before_projection(c, d, Eigen::MatrixXd::Identity(poses_, poses_))) -
            linear::transposed_product(of_c, of_d);
+  }
   Eigen::MatrixXd out = linear::transposed_product(-of_c, of_d);
   out.diagonal() += fit_->before_of(c, d);
   return out;

@@ -133,6 +133,8 @@ class ChannelSums {
     int channels;
     /// Diagonals of h_cd, d >= c, where the noise is uncorrelated; else empty.
     std::vector<std::vector<Eigen::VectorXd>> before;
+    /// h_cc of a single sensor, where the noise is correlated: every round asks for those of all its axes.
+    std::vector<Eigen::MatrixXd> each_pose;
 
     [[nodiscard]] const Eigen::VectorXd& before_of(int c, int d) const;
     /// E_c G.
@@ -142,6 +144,7 @@ class ChannelSums {
     /// E_c' W' X of every channel, X as the whitener gives rows.
     [[nodiscard]] Scores by_channel(const Eigen::MatrixXd& X) const;
     void set_before();
+    void set_each_pose();
   };
 
   Eigen::Index poses_;
