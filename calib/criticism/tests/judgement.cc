@@ -2,13 +2,13 @@
 #include "calib/criticism/tests/judgement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calib/criticism/tests/likeliest_rates.h"
 #include "calib/criticism/tests/wandering_alternative.h"
 #include "calib/fit/joint/wandering_covariance.h"
 #include "calib/linear/parts.h"
@@ -64,57 +64,35 @@ double against(const WanderingAlternative& alternative, const ScoredFamily& fami
                  family.asked);
 }
 
+/// A family with one of its scores.
+struct Question {
+  const ScoredFamily& family;
+  const Score& score;
+  double log10_p{0};
+};
+
 void ask(const WanderingAlternative& alternative, const Criticism& c, AgainstWalk& out) {
+  std::vector<Question> all;
   std::size_t asked = 0;
   for (std::size_t f = 0; f < c.families.size() && asked < kQuestions && c.rejects_named(f); ++f) {
     const ScoredFamily& family = c.families[f];
     if (out.log10_p.contains(family.candidate_effect->name)) continue;
     ++asked;
-    double& p = out.log10_p[family.candidate_effect->name] = 0;
-    for (const Score* score : questions(family)) {
-      const Eigen::MatrixXd rows = rows_of(alternative, family, *score);
-      p = std::min(p, against(alternative, family, *score, rows));
-      if (best_of(p, c.rates.best) >= std::log10(kNamedAlarm) || p >= out.least) continue;
-      out.least = p, out.passed = true;
-      out.beside = alternative.beside(rows);
-    }
+    for (const Score* score : questions(family)) all.push_back({family, *score});
   }
-}
-
-/// Rates times the factor at which a deviance is smallest.
-fit::joint::WanderingRates at_least(fit::joint::WanderingRates rates, const auto& deviance) {
-  constexpr double kFactor = 1.6;
-  constexpr int kMost = 8;
-  const std::array<double, 3> steps{1, kFactor, 1 / kFactor};
-  std::array<double, 3> first{};
-  linear::for_each_part(first.size(), [&](std::size_t i) { first[i] = deviance(rates * steps[i]); });
-  const std::size_t towards = first[1] < first[0] ? 1 : 2;
-  if (first[towards] >= first[0]) return rates;
-  double least = first[towards];
-  rates *= steps[towards];
-  for (int i = 1; i < kMost;) {
-    std::vector<fit::joint::WanderingRates> ahead;
-    while (ahead.size() < linear::threads())
-      ahead.push_back((ahead.empty() ? rates : ahead.back()) * steps[towards]);
-    std::vector<double> next(ahead.size());
-    linear::for_each_part(next.size(), [&](std::size_t k) { next[k] = deviance(ahead[k]); });
-    for (std::size_t k = 0; k < next.size(); ++k) {
-      if (next[k] >= least || i == kMost) return rates;
-      least = next[k], rates = ahead[k];
-      ++i;
-    }
-  }
-  return rates;
-}
-
-/// Rates where the white noise is that of the weights, near given ones: those come from a few slow terms,
-/// beyond which a walk far above the noise looks white.
-fit::joint::WanderingRates beside_white(const fit::joint::JointFit& fit,
-                                        const fit::joint::WanderingRates& rates) {
-  return at_least(rates, [&](const fit::joint::WanderingRates& at) {
-    const Residual residual(fit.problem, fit.state, 0, at);
-    return residual.dof() * std::log(residual.chi2()) + residual.whitener().log_det();
+  linear::for_each_part(all.size(), [&](std::size_t i) {
+    Question& q = all[i];
+    q.log10_p = against(alternative, q.family, q.score, rows_of(alternative, q.family, q.score));
   });
+  const Question* best = nullptr;
+  for (const Question& q : all) {
+    double& p = out.log10_p[q.family.candidate_effect->name];
+    p = std::min(p, q.log10_p);
+    if (best_of(p, c.rates.best) >= std::log10(kNamedAlarm) || p >= out.least) continue;
+    out.least = p, out.passed = true;
+    best = &q;
+  }
+  if (best != nullptr) out.beside = alternative.beside(rows_of(alternative, best->family, best->score));
 }
 
 /// The largest step from one pose to the next, in units of the noise of a pose mean.
@@ -160,16 +138,6 @@ fit::joint::JointFit with_noise(const fit::joint::JointFit& stated, double facto
   return out;
 }
 
-/// -2 ln L of readings whose noise is what the weights say, beside a walk.
-double deviance_of(const fit::joint::JointFit& fit, const fit::joint::WanderingRates& rates) {
-  double log_variances = 0;
-  for (const fit::joint::JointPose& pose : fit.problem.poses)
-    for (int c = 0; c < fit.problem.channels(); ++c)
-      if (pose.weight[c] > 0) log_variances -= 2 * std::log(pose.weight[c]);
-  const Residual residual(fit.problem, fit.state, 0, rates);
-  return residual.chi2() + residual.whitener().log_det() + log_variances;
-}
-
 /// What the tests stand against.
 struct Against {
   fit::joint::JointFit fit;
@@ -195,9 +163,8 @@ std::optional<Against> beside_larger_noise(const fit::joint::JointFit& stated, c
   fit::joint::WanderingRates rates;
   for (double at = kStep; at < kMost; at *= kStep) {
     const fit::joint::JointFit fit = with_noise(stated, at);
-    const auto deviance = [&](const fit::joint::WanderingRates& r) { return deviance_of(fit, r); };
-    const fit::joint::WanderingRates beside = at_least(found.size, deviance);
-    if (const double now = deviance(beside); now < least) {
+    const fit::joint::WanderingRates beside = likeliest_rates(fit, found.size, WhiteNoise::as_weighted);
+    if (const double now = deviance_of(fit, beside); now < least) {
       least = now, factor = at, rates = beside;
     } else if (factor > 1) {
       break;
@@ -280,11 +247,12 @@ Judgement judge(const fit::joint::JointFit& fit, const CandidateEffects& candida
   };
   ask(*alternative, out.criticism, walk);
   fit::joint::WanderingRates rates;  // of `found`
-  if (walk.passed && walk.beside.any()) rates = beside_white(stated, walk.beside.size);
+  if (walk.passed && walk.beside.any())
+    rates = likeliest_rates(stated, walk.beside.size, WhiteNoise::of_any_size);
   if (walk.passed && (!walk.beside.any() || mild(rates))) {
     found = std::move(walk.beside);
   } else {
-    rates = beside_white(stated, found.size);
+    rates = likeliest_rates(stated, found.size, WhiteNoise::of_any_size);
     if (walk.passed || !mild(rates)) walk = {};
   }
   if (!found.any()) return out;
