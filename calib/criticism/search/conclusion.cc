@@ -125,17 +125,17 @@ std::optional<ExplainNote> wrong_wiring(const fit::joint::JointFit& fit, double 
   return std::nullopt;
 }
 
-/// A residual far above the noise that is not a law's: it has no shape and the poses contradict each other,
-/// or a few readings make it. Beside effects that were `named`, also if they were taken back since, the poses
-/// must contradict each other and the residual must have longer tails than any law leaves. Empty when it is
-/// not so.
+/// A residual far above the noise that is not a law's: the poses contradict each other, and it has longer
+/// tails than any law leaves or no shape at all; or, where no name stays, a few readings make it. Empty when
+/// it is not so.
 std::optional<ExplainNote> residual_without_law(const fit::joint::JointFit& fit, const tests::Criticism& last,
                                                 bool named) {
   if (!(fit.noise_inflation > 1) || last.noise.wandering.any()) return std::nullopt;
   const fit::joint::Scatter scatter = fit::joint::scatter_of(fit);
   const bool contradicting = fit.contradicting > fit::checks::kMaxBadPoses;
-  const bool bad = named ? contradicting && scatter.residual_nT > fit::joint::kTailsOfLaw * scatter.typical_nT
-                         : (contradicting && !last.rejects()) || scatter.few_far_off();
+  const bool no_law = scatter.residual_nT > fit::joint::kTailsOfLaw * scatter.typical_nT;
+  const bool no_shape = !named && !last.rejects();
+  const bool bad = (contradicting && (no_law || no_shape)) || (!named && scatter.few_far_off());
   if (!bad) return std::nullopt;
   return ResidualWithoutLaw{fit.noise_inflation, scatter.residual_nT, scatter.typical_nT, fit.contradicting};
 }
@@ -151,10 +151,7 @@ bool stays_far_above_noise(const ExplainReport& report, const tests::Criticism& 
 Finding conclude(const ExplainReport& report, const Asked& first, const tests::Criticism& last,
                  std::vector<ExplainNote>& notes) {
   const fit::joint::JointFit& fit = report.rounds.empty() ? *report.fit : *report.rounds.back().fit;
-  const bool named = !report.rounds.empty() || std::any_of(notes.begin(), notes.end(), [](const auto& note) {
-    return std::holds_alternative<TookLittle>(note);
-  });
-  if (auto why = residual_without_law(fit, last, named)) {
+  if (auto why = residual_without_law(fit, last, !report.rounds.empty())) {
     notes.push_back(*std::move(why));
     return Finding::bad_data;
   }
