@@ -9,6 +9,7 @@
 #include "calib/calibration/effect_correction.h"
 #include "calib/calibration/field_derivative.h"
 #include "calib/calibration/field_expansion.h"
+#include "calib/linear/cholesky4.h"
 #include "calib/linear/propagation.h"
 
 namespace mgtd::calib::calibration {
@@ -22,7 +23,7 @@ using ClosureCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 
 double closure_chi2(const Closure& closure, const Eigen::Matrix4d& covariance) {
   Eigen::Vector4d values;
   values << closure.curl_nT_per_m, closure.center_nT;
-  return values.dot(covariance.llt().solve(values));
+  return linear::Cholesky4(covariance).whitened(values).squaredNorm();
 }
 
 double closure_chi2(const Closure& closure, const ClosureCovariance& covariance) {
@@ -30,6 +31,13 @@ double closure_chi2(const Closure& closure, const ClosureCovariance& covariance)
   if (closure.combinations_nT.size() == 0) return closure_chi2(closure, Eigen::Matrix4d(covariance));
   const sensor::FieldVector& values = closure.combinations_nT;
   return covariance.llt().matrixL().solve(values).squaredNorm();
+}
+
+/// S becomes symmetric: `at(pair)` gives the pairs of its upper triangle, row by row.
+void fill_symmetric(auto& S, const auto& at) {
+  std::size_t pair = 0;
+  for (Eigen::Index i = 0; i < S.rows(); ++i)
+    for (Eigen::Index j = i; j < S.cols(); ++j) S(i, j) = S(j, i) = at(pair++);
 }
 
 FieldExpansion expansion_of(const sensor::Geometry& geometry) {
@@ -272,12 +280,16 @@ void TensorPipeline::add_uncertainty(double samples, TensorSample& out) const {
   out.g_sd_nT_per_m = {sd[0], sd[1], sd[2], sd[3], sd[4], sd[5]};
   for (std::size_t i = 0; out.along_line && i < 3; ++i)
     out.along_line->sd_nT_per_m[static_cast<Eigen::Index>(i)] = line_uncertainty_[i].sd(q, samples);
-  ClosureCovariance S(out.closure.dof, out.closure.dof);
-  std::size_t pair = 0;
-  for (int i = 0; i < S.rows(); ++i) {
-    for (int j = i; j < S.rows(); ++j) S(i, j) = S(j, i) = closure_covariance_[pair++].at(q, samples);
+  const auto at = [&](std::size_t pair) { return closure_covariance_[pair].at(q, samples); };
+  if (rows_) {
+    ClosureCovariance S(out.closure.dof, out.closure.dof);
+    fill_symmetric(S, at);
+    out.closure.chi2 = closure_chi2(out.closure, S);
+  } else {
+    Eigen::Matrix4d S;
+    fill_symmetric(S, at);
+    out.closure.chi2 = closure_chi2(out.closure, S);
   }
-  out.closure.chi2 = closure_chi2(out.closure, S);
 }
 
 Gradient TensorPipeline::gradient_sd(const sensor::ChannelCovariance& covariance, double samples) const {
@@ -330,17 +342,20 @@ TensorSample TensorPipeline::apply(const Pose& pose, double samples, bool remove
   return out;
 }
 
+TensorSample TensorPipeline::by_parameters(const PerSensor<Eigen::Vector3d>& y_nT, double samples,
+                                           sensor::FieldVector* fields_P_nT) const {
+  const sensor::FieldVector b_P_nT = correct(y_nT);
+  if (fields_P_nT != nullptr) *fields_P_nT = b_P_nT;
+  TensorSample out = sample(b_P_nT);
+  if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
+  return out;
+}
+
 TensorSample TensorPipeline::apply(const Epoch& epoch, double samples,
                                    sensor::FieldVector* fields_P_nT) const {
-  TensorSample out;
-  if (effects_ && effects_->has_instrument_effects()) {
-    out = apply(pose_of(epoch), samples, false, nullptr, fields_P_nT);
-  } else {
-    const sensor::FieldVector b_P_nT = correct(epoch.y_nT);
-    if (fields_P_nT != nullptr) *fields_P_nT = b_P_nT;
-    out = sample(b_P_nT);
-    if (calibration_ != nullptr && noise_known_) add_uncertainty(samples, out);
-  }
+  TensorSample out = effects_ && effects_->has_instrument_effects()
+                         ? apply(pose_of(epoch), samples, false, nullptr, fields_P_nT)
+                         : by_parameters(epoch.y_nT, samples, fields_P_nT);
   out.seq = epoch.seq;
   out.t = epoch.t;
   out.skew_bound_s = epoch.skew_bound_s;

@@ -111,6 +111,9 @@ class TensorPipeline {
   };
 
   void prepare_uncertainty();
+  /// A sample as apply() makes it, without effects, sequence number and time.
+  [[nodiscard]] TensorSample by_parameters(const PerSensor<Eigen::Vector3d>& y_nT, double samples,
+                                           sensor::FieldVector* fields_P_nT) const;
   [[nodiscard]] FieldAndGradient expanded(const sensor::FieldVector& b_P_nT) const;
   void add_uncertainty(double samples, TensorSample& out) const;
   void add_uncertainty(const sensor::ChannelCovariance& covariance, double samples, TensorSample& out) const;
