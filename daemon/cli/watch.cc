@@ -14,6 +14,7 @@
 #include "daemon/cli/gap_pace.h"
 #include "daemon/cli/in_range.h"
 #include "daemon/cli/progress.h"
+#include "daemon/cli/sample_line.h"
 #include "daemon/cli/watch_panel.h"
 #include "daemon/serve/stream_reader.h"
 #include "proto/standard_output.h"
@@ -27,13 +28,6 @@ struct WatchArguments {
   std::uint64_t count{0};
   bool raw{false}, lines{false};
 };
-
-/// Right-aligned; "--" where the stream has no number.
-std::string number(const nlohmann::json& object, const char* key, int width) {
-  const auto& value = object.at(key);
-  return value.is_null() ? fmt::format("{:>{}}", "--", width)
-                         : fmt::format("{:{}.2f}", value.get<double>(), width);
-}
 
 /// Gaps that follow each other are one line. On a terminal it is rewritten in place. Elsewhere it is printed
 /// when samples come again; while none come, with the count so far, as often as GapPace allows.
@@ -71,34 +65,6 @@ class Gaps {
   GapPace pace_;
 };
 
-/// The gradient; where the array tells none, the field's components and, of sensors on one line, the
-/// derivative along it.
-std::string vector_or_tensor(const nlohmann::json& s, double sd) {
-  const auto& g = s.at("g_nT_per_m");
-  const bool told = std::any_of(g.begin(), g.end(), [](const auto& value) { return value.is_number(); });
-  const auto& b = s.at("b_nT");
-  std::string along_line = along_line_text(s);
-  if (!along_line.empty()) along_line = "  G " + along_line;
-  if (!told && b.at(0).is_number())
-    return fmt::format("B x {:10.2f} y {:10.2f} z {:10.2f} nT{}", b.at(0).get<double>(),
-                       b.at(1).get<double>(), b.at(2).get<double>(), along_line);
-  return fmt::format("G xx {} yy {} zz {} xy {} xz {} yz {}{} nT/m", number(g, "xx", 8), number(g, "yy", 8),
-                     number(g, "zz", 8), number(g, "xy", 8), number(g, "xz", 8), number(g, "yz", 8),
-                     sd > 0 ? fmt::format(" each to +-{:.2f} or better", sd) : "");
-}
-
-void print_sample(const nlohmann::json& s) {
-  double sd = 0;  // the largest of the six; zero without a calibration
-  for (const auto& value : s.at("g_sd_nT_per_m"))
-    if (value.is_number()) sd = std::max(sd, value.get<double>());
-  std::string flags;
-  for (const auto& flag : s.at("flags")) flags += " " + flag.get<std::string>();
-  fmt::print("{}  F {} nT  {}  cal {}{}\n", s.at("t").get<std::string>().substr(11, 12),
-             number(s, "f_nT", 10), vector_or_tensor(s, sd),
-             s.at("cal").is_null() ? "none" : s.at("cal").get<std::string>(), flags);
-  flush_standard_output();
-}
-
 /// Prints what the daemon says of the active calibration, each time that it changes from `shown`.
 void print_criticism(const nlohmann::json& status, std::string& shown, Gaps& gaps) {
   const auto& criticism = status.at("criticism");
@@ -126,7 +92,8 @@ void show(const nlohmann::json& object, std::string& criticism, Gaps& gaps) {
   const std::string kind = object.at("class");
   if (kind == "TENSOR") {
     gaps.end();
-    print_sample(object);
+    fmt::print("{}\n", sample_line(object));
+    flush_standard_output();
   } else if (kind == "STATUS") {
     print_criticism(object, criticism, gaps);
     gaps.mention_when_due();
