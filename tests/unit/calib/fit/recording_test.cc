@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <array>
+#include <set>
 #include <string>
 
 #include "calib/fit/joint/joint_fit.h"
@@ -78,6 +80,31 @@ TEST(Recording, ALongOneIsFittedWithAllItsSamples) {
   const Eigen::VectorXd moved = again->state.sensors[0].parameters() - fit->state.sensors[0].parameters();
   EXPECT_LT((moved.array() / sd.array()).head<9>().abs().maxCoeff(), 0.05);
   EXPECT_LT(nine_squared_errors(fitted(table, testing::one_sensor()).calibration, scenario.truth[0]), 28);
+}
+
+/// Where a sensor is off alone, the other tells that it is; its other axes count.
+TEST(Recording, OfTwoSensorsAGrossReadingIsLeftOutAlone) {
+  const auto scenario = testing::scenario_of(
+      testing::two_along_x(), 5, "[recording]\nmotion = \"hand\"\nrate_hz = 20\nduration_s = 150\nar = 0\n");
+  const PoseTable clean = rig::pose_table_of(rig::simulated_recording(scenario));
+  PoseTable table = clean;
+  constexpr std::array<std::size_t, 3> kGross{200, 900, 1600};
+  for (std::size_t axis = 0; axis < kGross.size(); ++axis)
+    table.poses[kGross[axis]].y_nT[1][static_cast<Eigen::Index>(axis)] += 800;
+  fit::joint::JointOptions options;
+  options.geometry = testing::geometry_of(testing::two_along_x());
+  const auto fit = fit::joint::fit_joint(table, options), without = fit::joint::fit_joint(clean, options);
+  ASSERT_TRUE(fit) << fit.error().text();
+  ASSERT_TRUE(without) << without.error().text();
+  std::set<std::size_t> left_out;
+  for (const fit::OutlierNode& node : fit->outliers) {
+    left_out.insert(node.place);
+    EXPECT_THAT(node.where, ::testing::StartsWith("s2"));
+  }
+  EXPECT_THAT(left_out, ::testing::ElementsAreArray(kGross));
+  const Eigen::VectorXd sd = without->covariance.diagonal().head(24).cwiseSqrt().cwiseMax(1e-9);
+  const Eigen::VectorXd moved = (fit->state.fixed() - without->state.fixed()).head(24);
+  EXPECT_LT((moved.array() / sd.array()).abs().maxCoeff(), 0.2);
 }
 
 TEST(Recording, CleanOnesPass) {
