@@ -34,7 +34,9 @@ class ArrayModel {
   /// What the site's effects add to a uniform field at each sensor, platform frame.
   [[nodiscard]] sensor::FieldVector site_field(const effects::Conditions& at, const Eigen::Matrix3d& R) const;
   [[nodiscard]] bool has_site_effects() const { return !site_.empty(); }
-  [[nodiscard]] bool has_instrument_effects() const { return !axis_.empty() || !platform_.empty(); }
+  [[nodiscard]] bool has_instrument_effects() const { return !axis_.empty() || has_platform_effects(); }
+  /// They alone of the instrument's effects know where down is.
+  [[nodiscard]] bool has_platform_effects() const { return !platform_.empty(); }
   /// Site to platform as the table truly stood, for recorded angles.
   [[nodiscard]] Eigen::Matrix3d attitude(const effects::Conditions& at) const;
   /// Derivative of the corrected field by the parameters of all sensors and then by all coefficients,

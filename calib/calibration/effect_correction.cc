@@ -81,19 +81,21 @@ sensor::ChannelCovariance EffectCorrection::covariance(const effects::Conditions
   return out;
 }
 
+std::optional<Eigen::Matrix3d> EffectCorrection::attitude_for_instrument(
+    const effects::Conditions& at) const {
+  if (!array_.has_platform_effects() || !at.pose.angles()) return std::nullopt;
+  return array_.attitude(at);
+}
+
 sensor::FieldVector EffectCorrection::fields(const Pose& pose, const sensor::FieldVector& y_nT) const {
   const effects::Conditions at{pose, time_.hours(pose), nullptr, &means_};
-  std::optional<Eigen::Matrix3d> R;
-  if (pose.angles()) R = array_.attitude(at);
-  return array_.correct(at, y_nT, R);
+  return array_.correct(at, y_nT, attitude_for_instrument(at));
 }
 
 sensor::ChannelCovariance EffectCorrection::covariance(const Pose& pose,
                                                        const sensor::FieldVector& b_P_nT) const {
   const effects::Conditions at{pose, time_.hours(pose), nullptr, &means_};
-  std::optional<Eigen::Matrix3d> R;
-  if (pose.angles()) R = array_.attitude(at);
-  return covariance(at, b_P_nT, R, false);
+  return covariance(at, b_P_nT, attitude_for_instrument(at), false);
 }
 
 Corrected EffectCorrection::correct(const Pose& pose, const sensor::FieldVector& y_nT, bool remove_site,

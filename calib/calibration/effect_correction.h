@@ -57,7 +57,8 @@ class EffectCorrection {
  private:
   EffectCorrection(const Calibration& calibration, std::vector<effects::EffectPtr> effects);
   [[nodiscard]] bool acts(const effects::Effect& effect, bool remove_site) const;
-
+  /// Empty where no effect of the instrument asks for it.
+  [[nodiscard]] std::optional<Eigen::Matrix3d> attitude_for_instrument(const effects::Conditions& at) const;
   [[nodiscard]] sensor::ChannelCovariance covariance(const effects::Conditions& at,
                                                      const sensor::FieldVector& b_P_nT,
                                                      const std::optional<Eigen::Matrix3d>& R,
