@@ -126,12 +126,14 @@ async function running() {
   await look("run");
   await browser.run("for (const e of document.querySelectorAll('#course details')) e.open = true");
   await look("run-open");
+  rig.command("control", "break");  // the page keeps it for a while after what it last asked
   rig.command("run", "finish");
   await is("document.querySelectorAll('#proposal button').length === 2", "the calibration that the run proposes");
   await look("proposed");
   await press("#proposal", "Reject");
   await look("reject");
   await browser.click("reason-cancel");
+  rig.command("control", "break");
   rig.command("calibrations", "accept", "latest", "--force", "--why", "the run was ended early");
   earlier();
   await browser.click("tab-calibrations");
