@@ -62,7 +62,7 @@ Figures are in nT, rms of |b| - F, for each sensor in turn; "independent" is the
         if not given.vector:
             print(f"- **{given.name}**: {sentence(o.why)}")
     print("""
-On `fluxgates_swing`, `fm4` and `fm5` `explain` names the laws that the readings follow and no others. On `fluxgates` the temperature rises evenly with time: what drifts and what follows the temperature look alike, and `explain` says so (AMBIGUOUS). On `fluxgates_untold` the two drifts are right for the same reason, and the steps are not: no step is in the readings.
+On `fluxgates_swing`, `fm4` and `fm5` `explain` names the laws that the readings follow and no others. On `fluxgates` the temperature rises evenly with time: what drifts and what follows the temperature look alike, and `explain` says so (AMBIGUOUS). On `fluxgates_untold` the two drifts are right for the same reason.
 
 ## Twelve parameters
 
