@@ -12,6 +12,7 @@
 
 namespace mgtd::calib::discovery {
 namespace tests = criticism::tests;
+
 double one_over_length_left(double left2, double about_mean2, double whole2, double share) {
   const double least = std::max(share * share * about_mean2, kRounding * kRounding * whole2);
   return left2 > least && left2 > 0 ? 1 / std::sqrt(std::max(left2, 1e-300)) : 0;

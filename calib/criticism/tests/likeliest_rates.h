@@ -12,7 +12,8 @@ namespace mgtd::calib::criticism::tests {
 [[nodiscard]] double deviance_of(const fit::joint::JointFit& fit,
                                  const fit::joint::WanderingRates& nT_per_sqrt_h);
 
-/// The white noise of the readings: as the weights say, or that times a factor that nobody knows.
+/// The white noise of the readings: as the weights say, or that times a factor that nobody knows. The rates
+/// are then those beside white noise of the weights' size: both times the factor are the real ones.
 enum class WhiteNoise { as_weighted, of_any_size };
 
 /// Given rates times the power of 1.6 that the readings are most likely with, at most eight of them up or

@@ -34,6 +34,17 @@ TEST(Product, GramsOfPartsAddUp) {
                   .isApprox(Eigen::MatrixXd(gram(A).triangularView<Eigen::Lower>()), kRounding));
 }
 
+/// Small and large first factors, and columns that are no multiple of those taken together.
+TEST(Product, RowByRowIsTheSameProduct) {
+  for (const Eigen::Index n : {3, 12})
+    for (const Eigen::Index columns : {1, 8, 19}) {
+      const Eigen::MatrixXd A = some(n, n + 1, 0.1), B = some(n + 1, columns, 2);
+      RowByRow C(n, columns);
+      set_product(A, RowByRow(B), C);
+      EXPECT_TRUE(C.isApprox(A * B, kRounding)) << n << " " << columns;
+    }
+}
+
 TEST(Product, TransposedTimesAnother) {
   const Eigen::MatrixXd A = some(41, 7, 0.1), B = some(41, 19, 2);
   EXPECT_TRUE(transposed_product(A, B).isApprox(A.transpose() * B, kRounding));
