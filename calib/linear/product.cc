@@ -7,12 +7,13 @@
 #include <mutex>
 
 #include "calib/linear/blas_kernels.h"
+#include "calib/linear/blas_threads.h"
 
 namespace mgtd::calib::linear {
 namespace {
 
 /// A run is judged beside the acquisition, and its digits must not depend on the number of processors.
-[[maybe_unused]] const bool kReady = (take_fitting_kernels(), openblas_set_num_threads(1), true);
+[[maybe_unused]] const bool kReady = (take_fitting_kernels(), end_blas_threads(), true);
 
 /// The library as it is built without threads of its own hands out its buffers without a lock: two threads
 /// that call it at once may be given the same one. As it is built with threads it may be called at any time.

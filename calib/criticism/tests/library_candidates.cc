@@ -7,6 +7,7 @@
 #include "calib/effects/laws/site_dipole.h"
 #include "calib/effects/laws/site_step.h"
 #include "calib/effects/library/effect_family.h"
+#include "calib/linear/parts.h"
 
 namespace mgtd::calib::criticism::tests {
 namespace {
@@ -74,11 +75,15 @@ CandidateEffect candidate_effect_of(const effects::library::EffectFamily& family
                       .bound = family.bound,
                       .reads = std::string(family.needs)};
   const auto values = variants(family, context);
-  for (const auto& value : values) {
-    auto effect = effects::library::make(family, std::nullopt, value, context);
-    if (!effect) continue;
-    out.variants.push_back(std::move(*effect));
-    out.values.push_back(value);
+  std::vector<effects::EffectPtr> made(values.size());  // null where there is none
+  linear::for_each_part(values.size(), [&](std::size_t i) {
+    if (auto effect = effects::library::make(family, std::nullopt, values[i], context))
+      made[i] = *std::move(effect);
+  });
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!made[i]) continue;
+    out.variants.push_back(std::move(made[i]));
+    out.values.push_back(values[i]);
   }
   if (family.scan) out.parameter = family.scan->parameter;
   if (!out.variants.empty()) out.hypotheses = hypotheses_of(*out.variants.front(), context.sensors());

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "calib/linear/parts.h"
 #include "calib/linear/product.h"
 #include "calib/linear/qr.h"
 
@@ -58,7 +59,18 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
     out.rightCols<fit::joint::kNuisances>() = nuisance.middleRows(pose * pose_rows_, pose_rows_);
     out.topRightCorner(channels_, fit::joint::kNuisances).array().colwise() *= factor.array();
   };
-  linear::TriangularisingRotation of_nuisances, of_last, of_left;
+  std::vector<double> log_dets(order_.size(), 0);  // of the nuisances that are a pose's alone
+  if (!remembers()) {
+    linear::for_each_poses(order_.size(), [&](std::size_t, std::size_t from, std::size_t to) {
+      linear::TriangularisingRotation of_nuisances;
+      for (std::size_t k = from; k < to; ++k) {
+        of_nuisances.turn(nuisance.middleRows(order_[k] * pose_rows_, pose_rows_));
+        log_dets[k] = log_det_of(of_nuisances.triangle());
+        steps_[k].alone = of_nuisances.rows_from(fit::joint::kNuisances);
+      }
+    });
+  }
+  linear::TriangularisingRotation of_last, of_left;
   Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(U, U), own, own_before;
   Eigen::MatrixXd last(U + W + coupled(), U), mine(U + W + coupled(), U), left(W + own_rows(), U);
   Eigen::VectorXd now(channels_), before(channels_);
@@ -76,16 +88,11 @@ Whitener::Whitener(const fit::joint::JointProblem& problem, const Eigen::MatrixX
       now = 1 + both * (fresh - 1);
       before = -rho * fresh * both;
     }
-    feel(order_[k], now, own);
-    if (!remembers()) {
-      of_nuisances.turn(own.rightCols<fit::joint::kNuisances>());
-      log_det_ += log_det_of(of_nuisances.triangle());
-      step.alone = of_nuisances.rows_from(fit::joint::kNuisances);
-      own = step.alone * own.leftCols(W);
-    } else {
-      step.now = now, step.before = before;
-    }
+    log_det_ += log_dets[k];
+    if (remembers()) step.now = now, step.before = before;
     if (U == 0) continue;
+    feel(order_[k], now, own);
+    if (!remembers()) own = step.alone * own.leftCols(W);
     last.setZero();
     mine.setZero();
     last.topRows(U) = carried;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "calib/calibration/array_model.h"
 #include "calib/fit/calibration_frame.h"
@@ -17,6 +18,7 @@
 #include "calib/fit/joint/tensor_uncertainty.h"
 #include "calib/fit/joint/wandering_covariance.h"
 #include "calib/fit/two_step/two_step.h"
+#include "calib/linear/parts.h"
 #include "calib/linear/propagation.h"
 
 namespace mgtd::calib::fit::joint {
@@ -54,7 +56,7 @@ std::vector<Eigen::Index> untouched(const JointFit& fit) {
 void compare_methods(const Readings& readings, const FitOptions& options, const JointFit& fit,
                      FitReport& report) {
   const auto errors = [&, counts = counted(fit.problem)](const FieldTable& b_nT) {
-    return summarise(b_nT, readings.f_nT, report.calibration.geometry, counts);
+    return summarise(b_nT, readings.f_nT, options.geometry, counts);
   };
   report.before = errors(raw_fields(readings));
   FieldTable b = raw_fields(readings);
@@ -213,10 +215,16 @@ Result<FitReport> joint_report(const PoseTable& table, const FitOptions& options
   const auto readings = readings_of(table, with_field);
   if (!readings) return tl::unexpected(readings.error());
   FitReport report;
-  report.calibration = calibration_frame(table, *readings, options);
+  calibration::Calibration frame;
+  linear::for_each_part(2, [&](std::size_t part) {
+    if (part == 0)
+      frame = calibration_frame(table, *readings, options);
+    else
+      compare_methods(*readings, with_field, *fit, report);
+  });
+  report.calibration = std::move(frame);
   fill_calibration(*fit, report.calibration);
   fill_statistics(*fit, equations, report);
-  compare_methods(*readings, with_field, *fit, report);
   report.check_poses = errors_of_check_poses(table, *joint, *fit);
   report.table.stated_sd_rad = options.table_sd_rad;
   if (options.most_left_out > 0) report.contradicting = fit->contradicting;
