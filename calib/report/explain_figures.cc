@@ -91,6 +91,7 @@ figures::Figure detectable_of(const std::vector<criticism::tests::Detectable>& d
 
 figures::Figure waterfall_of(const criticism::search::Waterfall& w, std::optional<double> held_out_nT) {
   figures::WaterfallValues v{.effects = {},
+                             .short_names = {},
                              .residual = {.unit = "nT",
                                           .without = w.without_nT,
                                           .with = w.with_nT,
@@ -109,6 +110,7 @@ figures::Figure waterfall_of(const criticism::search::Waterfall& w, std::optiona
                 .held_out = {}};
   for (const auto& s : w.steps) {
     v.effects.push_back(s.spec.empty() ? s.effect : s.spec);
+    v.short_names.push_back(s.effect);
     v.residual.first_share.push_back(s.first_nT), v.residual.last_share.push_back(s.last_nT);
     if (!v.tensor) continue;
     v.tensor->first_share.push_back(s.first_nT_per_m), v.tensor->last_share.push_back(s.last_nT_per_m);

@@ -11,6 +11,7 @@
 
 #include "calib/criticism/search/temperature_dependence.h"
 #include "calib/criticism/tests/local_lack_of_fit.h"
+#include "calib/criticism/tests/multiplicity.h"
 #include "calib/effects/common_axis.h"
 #include "calib/fit/checks/check_limits.h"
 #include "calib/fit/joint/agreement.h"
@@ -46,18 +47,25 @@ std::optional<ExplainNote> doubt(const Round& round, const Asked& before) {
   return std::nullopt;
 }
 
-/// The first of the named laws that leaves something on its own axes; nothing when none does.
+/// Of the named laws the one that leaves most on its own axes, in relation to chance; nothing where each of
+/// them leaves no more than chance does among so many.
 std::optional<ExplainNote> lack_of_fit_that_remains(const ExplainReport& report,
                                                     const tests::Criticism& last) {
+  LackOfFitRemains most;
+  std::set<std::string> places;
   for (const Round& round : report.rounds) {
     for (const effects::EffectPtr& effect : round.effects) {
       const auto spec = effects::EffectSpec::parse(effect->spec());
       const std::string where = spec && spec->where ? spec->where->text() : round.added.where;
+      if (places.contains(where)) continue;
       const double log10_p = tests::local_lack_of_fit_log10_p(last, where);
-      if (log10_p < std::log10(tests::kLackOfFitAlarm))
-        return LackOfFitRemains{round.added.effect, where, log10_p};
+      if (log10_p < 0) places.insert(where);
+      if (log10_p < most.log10_p) most = {round.added.effect, where, log10_p};
     }
   }
+  if (places.empty()) return std::nullopt;
+  most.log10_p = tests::best_of(most.log10_p, static_cast<double>(places.size()));
+  if (most.log10_p < std::log10(tests::kLackOfFitAlarm)) return most;
   return std::nullopt;
 }
 

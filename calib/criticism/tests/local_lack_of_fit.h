@@ -10,7 +10,7 @@
 /// questions are asked, so that the difference shows even when it is too small for an alarm.
 namespace mgtd::calib::criticism::tests {
 
-/// Probability that a correctly named effect is still reported as incomplete.
+/// Probability that effects which are named rightly, one or several, are still reported as incomplete.
 inline constexpr double kLackOfFitAlarm = 0.01;
 
 /// log10 of the probability that noise alone leaves so much on `where` ("s3.z" or "s3"), named effects and

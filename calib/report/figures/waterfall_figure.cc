@@ -24,12 +24,19 @@ struct Fall {
 
 double less(double whole, double part) { return std::sqrt(std::max(0.0, whole * whole - part * part)); }
 
+constexpr double kMostLabel = 270, kLabelGap = 20;
+
+std::string label_of(const WaterfallValues& v, std::size_t i) {
+  const bool fits = text_width(v.effects[i], kFontSize) + kLabelGap <= kMostLabel;
+  return fits || v.short_names.empty() ? v.effects[i] : v.short_names[i];
+}
+
 std::vector<Fall> falls_of(const WaterfallValues& v, const FallValues& f) {
   std::vector<Fall> out;
   out.push_back({"without any effect", f.without, f.without, Tone::grey, short_number(f.without)});
   for (std::size_t i = 0; i < v.effects.size(); ++i) {
     const double missing = std::hypot(f.with, f.last_share[i]);
-    out.push_back({v.effects[i], f.without, less(f.without, f.first_share[i]), Tone::blue,
+    out.push_back({label_of(v, i), f.without, less(f.without, f.first_share[i]), Tone::blue,
                    short_number(f.first_share[i])});
     out.push_back({"", missing, f.with, Tone::vermilion, short_number(f.last_share[i])});
   }
@@ -103,8 +110,9 @@ DataTable table_of(const WaterfallValues& v) {
 
 Figure waterfall_figure(const WaterfallValues& v) {
   double label = 130;
-  for (const std::string& e : v.effects) label = std::max(label, text_width(e, kFontSize) + 20);
-  label = std::min(label, 270.0);
+  for (std::size_t i = 0; i < v.effects.size(); ++i)
+    label = std::max(label, text_width(label_of(v, i), kFontSize) + kLabelGap);
+  label = std::min(label, kMostLabel);
   const std::vector<Fall> left = falls_of(v, v.residual);
   const double height = kRow * static_cast<double>(left.size()), each = (820 - label - 30) / 2;
   Drawing drawing("waterfall", 820, kHeadRoom + height + Plot::kBottom + 4);

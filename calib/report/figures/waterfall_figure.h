@@ -23,6 +23,7 @@ struct FallValues {
 
 struct WaterfallValues {
   std::vector<std::string> effects{};
+  std::vector<std::string> short_names{};  ///< drawn in the place of an effect that is too long for its row
   FallValues residual{};
   std::optional<FallValues> tensor{};
 };

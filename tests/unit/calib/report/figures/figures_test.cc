@@ -178,6 +178,18 @@ TEST(Figures, TheWaterfallEndsAtTheNoise) {
   EXPECT_EQ(f.data.rows.size(), 5U);
 }
 
+TEST(Figures, TheWaterfallNamesAFormulaThatIsTooLongForItsRowByItsShortName) {
+  WaterfallValues values = testing::waterfall_example();
+  const std::string formula = "user.drying(axis; a*exp(-3600*t_h/382.328) + b*sind(3*azimuth_deg))";
+  values.short_names = values.effects;
+  values.effects[0] = formula;
+  values.short_names[0] = "user.drying";
+  const Figure f = waterfall_figure(values);
+  EXPECT_THAT(f.svg, HasSubstr(">user.drying<"));
+  EXPECT_THAT(f.svg, Not(HasSubstr("exp(-3600")));
+  EXPECT_EQ(f.data.rows[1].front(), formula) << "the table has room for it";
+}
+
 TEST(Figures, TheWaterfallOfAnArrayWithoutAGradientIsOfTheReadingsAlone) {
   WaterfallValues values = testing::waterfall_example();
   values.tensor.reset();
