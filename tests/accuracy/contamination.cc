@@ -76,6 +76,16 @@ PerSensor<calib::sensor::SensorModel> oracle(const Spoilt& run, const Scene& sce
   return solution->state.sensors;
 }
 
+/// Whether what is spoilt is one stretch that leaves fewer good poses than that before or after it.
+bool at_an_end(const Spoilt& run, Gross kind) {
+  constexpr std::ptrdiff_t kWithin = 3;
+  if (scattered(kind)) return false;
+  const auto bad = [](const std::bitset<12>& channels) { return channels.any(); };
+  const auto first = std::find_if(run.bad.begin(), run.bad.end(), bad);
+  const auto last = std::find_if(run.bad.rbegin(), run.bad.rend(), bad);
+  return first - run.bad.begin() < kWithin || last - run.bad.rbegin() < kWithin;
+}
+
 /// Good readings that are left out.
 int good_left_out(const calib::fit::FitReport& report, const Spoilt& run) {
   int out = 0;
@@ -144,7 +154,7 @@ Robustness robustness(const Contamination& what, int runs) {
   const Scene scene = contaminated_scene();
   Robustness out;
   out.runs = runs;
-  double found = 0, least = 0, good = 0;
+  double found = 0, least = 0, good = 0, away_found = 0, away_least = 0;
   for (int run = 0; run < runs; ++run) {
     const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(run);
     const Spoilt data = spoilt(scene.run(seed), what, seed);
@@ -156,12 +166,17 @@ Robustness robustness(const Contamination& what, int runs) {
     const double own = tensor_mean_square(report->calibration.sensors, scene).sum();
     const double best = tensor_mean_square(oracle(data, scene), scene).sum();
     found += own, least += best;
+    if (at_an_end(data, what.kind))
+      ++out.at_an_end;
+    else
+      away_found += own, away_least += best;
     out.worst = std::max(out.worst, std::sqrt(own / best));
     good += good_left_out(*report, data);
   }
   const int accepted = runs - out.refused;
   if (accepted == 0) return out;
   out.ratio = std::sqrt(found / least);
+  if (away_least > 0) out.away_ratio = std::sqrt(away_found / away_least);
   out.good_left_out = good / (12.0 * static_cast<double>(scene.poses) * accepted);
   return out;
 }

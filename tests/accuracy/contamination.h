@@ -38,9 +38,11 @@ struct Spoilt {
 
 struct Robustness {
   int runs{0};
-  int refused{0};           ///< no calibration, or one that the checks do not accept
-  double ratio{0};          ///< error of the tensor over the oracle's, rms over accepted runs and attitudes
-  double worst{0};          ///< of one accepted run
+  int refused{0};    ///< no calibration, or one that the checks do not accept
+  double ratio{0};   ///< error of the tensor over the oracle's, rms over accepted runs and attitudes
+  double worst{0};   ///< of one accepted run
+  int at_an_end{0};  ///< accepted runs whose stretch begins or ends within three poses of an end of the run
+  double away_ratio{0};     ///< `ratio` without those
   double good_left_out{0};  ///< good readings that were left out, share of all, accepted runs
 };
 [[nodiscard]] Robustness robustness(const Contamination& what, int runs);

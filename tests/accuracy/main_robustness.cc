@@ -56,11 +56,22 @@ std::string clean_line(int runs) {
       r.runs, r.ratio, 100 * r.good_left_out, r.refused);
 }
 
+/// Nothing where stretches at the ends of the run make no difference.
+std::string line_of_ends(const Robustness& r, double share, double size_nT) {
+  constexpr double kDifference = 0.05;
+  if (r.at_an_end == 0 || r.ratio - r.away_ratio < kDifference) return "";
+  return fmt::format(
+      "{:g} %, {:g} nT: in {} of the runs the stretch began or ended within three poses of an end of the "
+      "run; without these {:.2f}.\n\n",
+      100 * share, size_nT, r.at_an_end, r.away_ratio);
+}
+
 std::string table_of(Gross kind, const std::vector<double>& shares, int runs) {
   std::vector<std::string> header{"poses"};
   for (const double size : kSizes_nT) header.push_back(fmt::format("{:g} nT", size));
   header.emplace_back("good readings left out");
   MarkdownTable out(header);
+  std::string ends;
   for (const double share : shares) {
     std::vector<std::string> cells{fmt::format("{:g} %", 100 * share)};
     double good = 0;
@@ -68,12 +79,13 @@ std::string table_of(Gross kind, const std::vector<double>& shares, int runs) {
       const Robustness r = robustness({kind, share, size}, runs);
       std::fprintf(stderr, "%s, %g %%, %g nT: %s\n", name(kind).c_str(), 100 * share, size, cell(r).c_str());
       cells.push_back(cell(r));
+      ends += line_of_ends(r, share, size);
       good = std::max(good, r.good_left_out);
     }
     cells.push_back(fmt::format("{:.2f} %", 100 * good));
     out.line(cells);
   }
-  return fmt::format("## Spoilt: {}\n\n", name(kind)) + out.text();
+  return fmt::format("## Spoilt: {}\n\n", name(kind)) + out.text() + ends;
 }
 
 }  // namespace
