@@ -81,6 +81,16 @@ void Outliers::keep_out(JointProblem& problem, const ShiftedStretch& stretch) {
   leave_out(problem);
 }
 
+void Outliers::keep_out(JointProblem& problem, const Rows& rows) {
+  restore(problem);
+  for (std::size_t k = 0; k < left_out_.size(); ++k) {
+    if (left_out_[k].none()) continue;
+    left_out_[k] |= rows;
+    changed_[k] = kChanges;
+  }
+  leave_out(problem);
+}
+
 /// Where most poses of a stretch are disturbed in all sensors, or in one, the others of it are not trusted
 /// either.
 void Outliers::fill_stretches(int channels) {
@@ -154,6 +164,12 @@ void Outliers::widen_tails(const PoseResiduals& residuals, BlameLimits& limits) 
 }
 
 bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseResiduals& residuals) {
+  left_out_.resize(problem.poses.size());
+  return judge(problem, state, residuals, BlameLimits::of(residuals, left_out_));
+}
+
+bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseResiduals& residuals,
+                     BlameLimits limits) {
   const std::size_t n = problem.poses.size();
   left_out_.resize(n);
   weight_.resize(n);
@@ -161,7 +177,6 @@ bool Outliers::judge(JointProblem& problem, const JointState& state, const PoseR
   sigmas_.resize(n);
   if (!(most_ > 0) || given_up_ > kChanges) return false;
   too_many_ = 0;
-  BlameLimits limits = BlameLimits::of(residuals, left_out_);
   widen_tails(residuals, limits);
   const std::vector<Rows> before = left_out_;
   std::vector<std::size_t> examined;  // poses that had something left out or stand out now

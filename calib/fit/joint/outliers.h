@@ -24,6 +24,9 @@ class Outliers {
   /// returns whether the set changed. No more than the given share of the poses: where more of them
   /// contradict, it is the model that fails, and nothing is left out.
   bool judge(JointProblem& problem, const JointState& state, const PoseResiduals& residuals);
+  /// The same by limits of the caller.
+  bool judge(JointProblem& problem, const JointState& state, const PoseResiduals& residuals,
+             BlameLimits limits);
   /// Gives every observation its weight back, for a while: between this and leave_out() weights may be set.
   void restore(JointProblem& problem) const;
   void leave_out(JointProblem& problem);
@@ -31,6 +34,8 @@ class Outliers {
   /// Leaves these readings of a stretch out whatever each of its poses shows by itself: no pose of it is
   /// judged again.
   void keep_out(JointProblem& problem, const ShiftedStretch& stretch);
+  /// The same for every pose of which anything is left out.
+  void keep_out(JointProblem& problem, const Rows& rows);
 
   [[nodiscard]] bool any() const { return share() > 0; }
   /// Poses of which something is left out, of all poses.

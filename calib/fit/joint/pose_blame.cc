@@ -94,6 +94,17 @@ BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows
   return out;
 }
 
+BlameLimits BlameLimits::of_groups(const PoseResiduals& residuals) {
+  // The median of the root of a Gaussian sensor and its robust spread.
+  constexpr double kMedian = 1.54, kSpread = 0.67;
+  BlameLimits out;
+  out.single = kSingle;
+  out.spread = Observations::Ones(residuals.t.rows());
+  out.sensor.setConstant(residuals.scalar_row() / 3, kMedian + kLow * kSpread);
+  out.pose = kPose;
+  return out;
+}
+
 double BlameLimits::excess(const Observations& t) const {
   double worst = std::max(t.maxCoeff() / single, root_of_pose(t) / pose);
   for (int i = 0; i < sensor.size(); ++i) worst = std::max(worst, root_of(t, i) / sensor[i]);

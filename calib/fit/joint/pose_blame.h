@@ -14,8 +14,8 @@ namespace mgtd::calib::fit::joint {
 using Rows = std::bitset<kMostObservations>;  ///< readings, scalar, attitude
 
 /// What a pose may show before something of it is left out, all in robust spreads of the run's own misfits
-/// (never of the nominal noise alone): a single observation, the three readings of a sensor, all of the pose.
-/// Sensors and poses are judged by the root of the sum of squares.
+/// (never of the nominal noise alone, but in of_groups()): a single observation, the three readings of a
+/// sensor, all of the pose. Sensors and poses are judged by the root of the sum of squares.
 struct BlameLimits {
   Observations spread;
   double single{0};
@@ -25,6 +25,9 @@ struct BlameLimits {
   /// Limits from the misfits of all poses; those of observations that are left out count as beyond any limit,
   /// so that leaving out does not narrow the limits of the others.
   [[nodiscard]] static BlameLimits of(const PoseResiduals& residuals, std::span<const Rows> left_out);
+  /// For the noise of the weights, with which good readings agree, and sensors that are off together in a
+  /// group of poses by less than one pose can tell.
+  [[nodiscard]] static BlameLimits of_groups(const PoseResiduals& residuals);
   /// The largest misfit over its limit; above one something of the pose is to be left out. `t` as in
   /// PoseResiduals, one pose.
   [[nodiscard]] double excess(const Observations& t) const;

@@ -204,11 +204,57 @@ double excess(const PoseResiduals& residuals) {
   return (residuals.noise_ratio.array().square().mean() - 1) * std::sqrt(dof / 2);
 }
 
+/// Of mean square beyond the noise of the dwells, in its standard deviations, where a fit agrees with it.
+constexpr double kAgrees = 5;
+
+/// The readings of the sensor that all blame lies on; none where it lies on more, or where the poses that are
+/// hit follow each other more than chance has it: that may be a step, or a source that comes and goes.
+Rows sensor_to_blame(const Outliers& outliers, int channels) {
+  constexpr double kMost = 0.25;  // of the poses
+  constexpr double kAlone = 0.5;  // of the poses that are hit, those before which none was
+  Rows any;
+  double hit = 0, alone = 0;
+  bool before = false;
+  for (const Rows& rows : outliers.rows()) {
+    any |= rows;
+    hit += rows.any() ? 1 : 0;
+    alone += rows.any() && !before ? 1 : 0;
+    before = rows.any();
+  }
+  if (hit == 0 || outliers.share() > kMost || alone < kAlone * hit) return {};
+  for (int i = 0; 3 * i < channels; ++i)
+    if (const Rows sensor(0b111ULL << static_cast<unsigned>(3 * i)); (any & ~sensor).none()) return sensor;
+  return {};
+}
+
+/// The fit without the readings of a sensor that are off by little in many poses: together they draw the fit
+/// so far that none of them stands apart from the others. As it was where the rest does not then agree down
+/// to the noise of the dwells, or where no two other sensors tell which one is off.
+RobustFit without_a_group(JointProblem& problem, RobustFit fit, double most_left_out) {
+  constexpr int kFewestChannels = 3 * 3;
+  if (problem.channels() < kFewestChannels) return fit;
+  if (!fit.noise.sample_nT || fit.noise.noise_inflation > 1 || most_left_out <= 0) return fit;
+  if (excess(fit.residuals) <= kAgrees || fit.outliers.too_many() > 0) return fit;
+  JointProblem other = problem;
+  Outliers outliers = fit.outliers;
+  outliers.judge(other, fit.solution.state, fit.residuals, BlameLimits::of_groups(fit.residuals));
+  const Rows sensor = sensor_to_blame(outliers, problem.channels());
+  if (sensor.none()) return fit;
+  outliers.keep_out(other, sensor);
+  bool unsettled = false;
+  auto without = weighed(other, fit.solution.state, fit.noise, std::move(outliers), unsettled);
+  if (!without || without->outliers.too_many() > 0 || excess(without->residuals) > kAgrees) return fit;
+  without->rounds += fit.rounds;
+  without->iterations += fit.iterations;
+  without->start = fit.start;
+  problem = std::move(other);
+  return *std::move(without);
+}
+
 /// The fit without the stretches that are shifted against the rest (stretch_scan.h); as it was where none is,
 /// or where the rest does not then agree down to the noise of the dwells: that is a law which the model
 /// misses.
 RobustFit without_stretches(JointProblem& problem, RobustFit fit, double most_left_out) {
-  constexpr double kAgrees = 5;
   constexpr int kMostStretches = 3;
   if (!fit.noise.sample_nT || fit.noise.noise_inflation > 1 || most_left_out <= 0) return fit;
   JointProblem other = problem;
@@ -272,14 +318,14 @@ Result<RobustFit> robust_fit_from(JointProblem& problem, JointState warm_start, 
   outliers.judge(problem, warm_start, pose_residuals(problem, warm_start));
   auto fit = weighed(problem, std::move(warm_start), noise, std::move(outliers), unsettled);
   if (!fit) return fit;
-  return without_stretches(problem, *std::move(fit), most_left_out);
+  return without_a_group(problem, without_stretches(problem, *std::move(fit), most_left_out), most_left_out);
 }
 
 Result<RobustFit> robust_fit(JointProblem& problem, Result<JointState> start, double f_nT,
                              const FitNoise& noise, double most_left_out, bool& unsettled) {
   auto fit = from_either(problem, std::move(start), f_nT, noise, most_left_out, unsettled);
   if (!fit) return fit;
-  return without_stretches(problem, *std::move(fit), most_left_out);
+  return without_a_group(problem, without_stretches(problem, *std::move(fit), most_left_out), most_left_out);
 }
 
 }  // namespace mgtd::calib::fit::joint
