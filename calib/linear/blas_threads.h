@@ -4,8 +4,8 @@
 /// end_blas_threads() makes OpenBLAS multiply on the thread that calls it, and on no other.
 ///
 /// Where the library is built with threads it starts one for each processor when it is loaded. They look for
-/// work for some 30 ms before they sleep, which takes a tenth of the time of a fit of 26 000 samples away
-/// from the parts of parts.h, and digits would depend on how many there are.
+/// work for a while before they sleep, which takes processor time from the parts of parts.h, and digits would
+/// depend on how many there are.
 namespace mgtd::calib::linear {
 
 /// For the start of a program, before the first product. Of a library that is built without threads, or that

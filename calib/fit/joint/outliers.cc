@@ -23,14 +23,13 @@ constexpr int kBadNeighbours = 7;
 constexpr double kFew = 0.05, kNear = 0.6, kInTheGap = 0.2;
 
 unsigned long long all_readings(int channels) { return (1ULL << static_cast<unsigned>(channels)) - 1; }
-unsigned long long readings_of(int sensor) { return 0b111ULL << static_cast<unsigned>(3 * sensor); }
 bool disturbed(const Rows& rows, int channels) {
   return (rows.to_ullong() & all_readings(channels)) == all_readings(channels);
 }
 /// The sensor that is left out as a whole; -1 where none or more than one is.
 int whole_sensor(const Rows& rows, int channels) {
   for (int i = 0; 3 * i < channels; ++i)
-    if ((rows.to_ullong() & all_readings(channels)) == readings_of(i)) return i;
+    if ((rows.to_ullong() & all_readings(channels)) == rows_of_sensor(i).to_ullong()) return i;
   return -1;
 }
 
@@ -107,7 +106,7 @@ void Outliers::fill_stretches(int channels) {
   };
   fill(Rows(all_readings(channels)), [=](const Rows& rows) { return disturbed(rows, channels); });
   for (int i = 0; 3 * i < channels; ++i) {
-    fill(Rows(readings_of(i)), [=](const Rows& rows) { return whole_sensor(rows, channels) == i; });
+    fill(rows_of_sensor(i), [=](const Rows& rows) { return whole_sensor(rows, channels) == i; });
   }
 }
 

@@ -53,8 +53,6 @@ double root_of_pose(const Observations& t) {
   return t.size() == kOfCross + 1 ? t.head<kOfCross>().matrix().norm() : t.head(t.size() - 1).matrix().norm();
 }
 
-Rows rows_of_sensor(int sensor) { return Rows(0b111ULL << static_cast<unsigned>(3 * sensor)); }
-
 }  // namespace
 
 BlameLimits BlameLimits::of(const PoseResiduals& residuals, std::span<const Rows> left_out) {

@@ -13,6 +13,11 @@ namespace mgtd::calib::fit::joint {
 
 using Rows = std::bitset<kMostObservations>;  ///< readings, scalar, attitude
 
+/// The readings of one sensor, counted from zero.
+[[nodiscard]] inline Rows rows_of_sensor(int sensor) {
+  return Rows(0b111ULL << static_cast<unsigned>(3 * sensor));
+}
+
 /// What a pose may show before something of it is left out, all in robust spreads of the run's own misfits
 /// (never of the nominal noise alone, but in of_groups()): a single observation, the three readings of a
 /// sensor, all of the pose. Sensors and poses are judged by the root of the sum of squares.

@@ -207,6 +207,11 @@ double excess(const PoseResiduals& residuals) {
 /// Of mean square beyond the noise of the dwells, in its standard deviations, where a fit agrees with it.
 constexpr double kAgrees = 5;
 
+/// Whether the noise of the dwells says how well the readings kept must agree, and some may be left out.
+bool may_leave_out_more(const RobustFit& fit, double most_left_out) {
+  return fit.noise.sample_nT && fit.noise.noise_inflation <= 1 && most_left_out > 0;
+}
+
 /// The readings of the sensor that all blame lies on; none where it lies on more, or where the poses that are
 /// hit follow each other more than chance has it: that may be a step, or a source that comes and goes.
 Rows sensor_to_blame(const Outliers& outliers, int channels) {
@@ -223,7 +228,7 @@ Rows sensor_to_blame(const Outliers& outliers, int channels) {
   }
   if (hit == 0 || outliers.share() > kMost || alone < kAlone * hit) return {};
   for (int i = 0; 3 * i < channels; ++i)
-    if (const Rows sensor(0b111ULL << static_cast<unsigned>(3 * i)); (any & ~sensor).none()) return sensor;
+    if ((any & ~rows_of_sensor(i)).none()) return rows_of_sensor(i);
   return {};
 }
 
@@ -232,8 +237,7 @@ Rows sensor_to_blame(const Outliers& outliers, int channels) {
 /// to the noise of the dwells, or where no two other sensors tell which one is off.
 RobustFit without_a_group(JointProblem& problem, RobustFit fit, double most_left_out) {
   constexpr int kFewestChannels = 3 * 3;
-  if (problem.channels() < kFewestChannels) return fit;
-  if (!fit.noise.sample_nT || fit.noise.noise_inflation > 1 || most_left_out <= 0) return fit;
+  if (problem.channels() < kFewestChannels || !may_leave_out_more(fit, most_left_out)) return fit;
   if (excess(fit.residuals) <= kAgrees || fit.outliers.too_many() > 0) return fit;
   JointProblem other = problem;
   Outliers outliers = fit.outliers;
@@ -256,7 +260,7 @@ RobustFit without_a_group(JointProblem& problem, RobustFit fit, double most_left
 /// misses.
 RobustFit without_stretches(JointProblem& problem, RobustFit fit, double most_left_out) {
   constexpr int kMostStretches = 3;
-  if (!fit.noise.sample_nT || fit.noise.noise_inflation > 1 || most_left_out <= 0) return fit;
+  if (!may_leave_out_more(fit, most_left_out)) return fit;
   JointProblem other = problem;
   RobustFit without = fit;
   for (int i = 0; i < kMostStretches && excess(without.residuals) > kAgrees; ++i) {
