@@ -75,9 +75,11 @@ Result<NoiseInForce> noise_of(const PoseTable& table, const DiscoverOptions& opt
     if (!round) return tl::unexpected(round.error());
     const auto leading = chosen_law(bench, sums, *round, 1, "law1");
     if (!leading) return tl::unexpected(leading.error());
-    const auto with = fit_with(table, options.fit, fit, leading->law.formulas.front().specs);
+    const auto& specs = leading->law.formulas.front().specs;
+    if (specs.empty()) break;
+    const auto with = fit_with(table, options.fit, fit, specs);
     if (!with) return tl::unexpected(with.error());
-    if (!*with || leading->law.formulas.front().specs.empty()) break;
+    if (!*with) break;
     const auto variance_nT2 = variance_of_angles(leading->head, fit.table_sd_rad, inputs);
     if (!variance_nT2) return tl::unexpected(variance_nT2.error());
     const auto weighed = beside_variance(tests::at_stated_weights(**with), *variance_nT2);

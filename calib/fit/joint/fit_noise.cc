@@ -39,7 +39,7 @@ void FitNoise::apply(JointProblem& problem) const {
   add_memory_variance(problem, noise_inflation * noise_inflation);
   for (JointPose& pose : problem.poses) {
     // Loosened attitudes stay loose.
-    if (pose.has_angles && pose.attitude_weight > 1 / kTableCeiling_rad) pose.weigh_attitude(table_sd_rad);
+    if (pose.has_angles && pose.attitude_weight > kLooseAttitude_per_rad) pose.weigh_attitude(table_sd_rad);
   }
 }
 

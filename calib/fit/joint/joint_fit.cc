@@ -30,7 +30,8 @@ double most_left_out(const JointProblem& problem, const JointOptions& options) {
 void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, JointFit& fit) {
   const JointProblem& problem = fit.problem;
   fit.chi2 = reduced.cost.of_model() * fit.noise_inflation * fit.noise_inflation;
-  fit.chi2_table = reduced.cost.attitude;
+  // Of the attitudes that count: those left out have a cost, too.
+  fit.chi2_table = std::pow(residuals.table_ratio, 2) * residuals.attitude_freedom;
   fit.dof_table = residuals.attitude_freedom;
   double unknowns = problem.slots().sensor_block() + problem.coefficients() + problem.site_unknowns() -
                     (fit.gauge.beside_table && !fit.gauge.reference_turn_sd_rad ? 1 : 0);
@@ -38,10 +39,12 @@ void fill_statistics(const PoseResiduals& residuals, const Reduced& reduced, Joi
                     (problem.has_angles && problem.known_inclination_rad ? 1 : 0) +
                     (problem.has_angles && problem.known_declination_rad ? 1 : 0);
   for (const JointPose& pose : problem.poses) {
+    // Of an attitude that is left out only the turn about the field counts, that no reading tells.
+    const int angles = !pose.has_angles ? 0 : pose.attitude_weight > kLooseAttitude_per_rad ? 3 : 1;
     // Of a pose without angles and without readings only the size of its field is asked.
     unknowns += pose.has_angles ? 4 : pose.weight.isZero(0) && !problem.has_reference ? 1 : 3;
-    observed += (pose.has_angles ? 3 : 0) + (problem.common_field ? 1 : 0) +
-                (pose.reference_weight > 0 ? (pose.has_angles ? 1 : 3) : 0);
+    observed +=
+        angles + (problem.common_field ? 1 : 0) + (pose.reference_weight > 0 ? (pose.has_angles ? 1 : 3) : 0);
   }
   fit.dof = observed - unknowns - fit.dof_table;
   // Three standard deviations of a chi-square: wider than noise alone would make it, so the uncertainties
@@ -116,11 +119,11 @@ Result<JointFit> run(const PoseTable& table, const JointOptions& options, const 
   Reduced& reduced = found->solution.reduced;
   if (fit.gauge.beside_table) fit.gauge.reference_turn_sd_rad = reference_turn_sd_rad(fit.problem, reduced.S);
   fill_statistics(found->residuals, reduced, fit);
-  auto covariance = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : reduced.S);
-  if (!covariance) return tl::unexpected(covariance.error());
   if (is_recording(fit.problem))
     fit.samples_per_effective = sample_correlation(fit.problem, fit.state).samples_per_effective();
-  fit.covariance = fit.samples_per_effective * *covariance + filled_in_error(fit, reduced);
+  auto covariance = covariance_of(fit, reduced);
+  if (!covariance) return tl::unexpected(covariance.error());
+  fit.covariance = *std::move(covariance);
   fit.common_rotation_sd_rad = common_rotation_sd(fit.problem.sensors(), fit.covariance);
   return fit;
 }
@@ -171,6 +174,12 @@ Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& o
                                    const JointState* warm_start) {
   auto fit = settled_run(table, options, warm_start);
   return fit ? sized(table, options, warm_start, *std::move(fit)) : std::move(fit);
+}
+
+Result<Eigen::MatrixXd> covariance_of(const JointFit& fit, const Reduced& reduced) {
+  const auto white = covariance_of(fit.birge_ratio > 1 ? widened_information(fit) : reduced.S);
+  if (!white) return tl::unexpected(white.error());
+  return Eigen::MatrixXd(fit.samples_per_effective * *white + filled_in_error(fit, reduced));
 }
 
 Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S) {

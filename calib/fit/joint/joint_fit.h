@@ -40,7 +40,7 @@ struct JointFit {
   int rounds{0}, iterations{0};  ///< FitSummary
   JointState start;              ///< where the solver began
   Gauge gauge;
-  /// Standard deviations of the mean alpha, beta and gamma of the four sensors.
+  /// Standard deviations of the mean alpha, beta and gamma of all sensors.
   std::array<double, 3> common_rotation_sd_rad{};
   std::vector<OutlierNode> outliers;
   /// Poses that contradict the others in something, of all poses; above a third of them nothing is left out.
@@ -62,6 +62,8 @@ inline constexpr std::size_t kFewestPoses = 12;
 [[nodiscard]] Result<JointFit> fit_joint_at_size(const PoseTable& table, const JointOptions& options,
                                                  const JointState* warm_start = nullptr);
 
+/// JointFit::covariance of a fit whose other members are set; `reduced` at its state and weights.
+[[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const JointFit& fit, const Reduced& reduced);
 /// (S)^-1 of the information of the fixed block; refuses when it is not positive definite.
 [[nodiscard]] Result<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& S);
 

@@ -15,7 +15,7 @@ namespace mgtd::calib::fit::joint {
 /// compare, explain and add begin with it, so that all of them speak of one model.
 [[nodiscard]] Result<JointOptions> profiled_options(const PoseTable& table, const FitOptions& options);
 
-/// The 48 parameters, the effects, their covariance and the noise of a fit, into a calibration.
+/// The parameters of the sensors, the effects, their covariance and the noise of a fit, into a calibration.
 void fill_calibration(const JointFit& fit, calibration::Calibration& calibration);
 
 /// Mean strength of the field over the poses.

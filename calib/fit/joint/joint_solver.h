@@ -10,9 +10,10 @@
 /// solve() finds the least squares of a JointProblem by Gauss-Newton, damped (Levenberg-Marquardt) only where
 /// a step fails.
 ///
-/// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block of 51 + m and a 4x4 block per
-/// pose. Each pose is eliminated as it is met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear
-/// in the poses and nothing per pose is kept but its four nuisances.
+/// The Hessian is block bordered, [H_ff U; U' diag(H_k)], with a fixed block (12 parameters of each
+/// sensor, those of the site and of the effects) and a 4x4 block per pose. Each pose is eliminated as it is
+/// met: S = H_ff - sum U_k H_k^-1 U_k', so memory and time are linear in the poses and nothing per pose is
+/// kept but its four nuisances.
 namespace mgtd::calib::fit::joint {
 
 /// Chi-squares, kept apart: readings, scalar and vector reference decide about the model, attitude about

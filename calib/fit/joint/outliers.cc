@@ -80,10 +80,9 @@ void Outliers::keep_out(JointProblem& problem, const ShiftedStretch& stretch) {
   leave_out(problem);
 }
 
-void Outliers::keep_out(JointProblem& problem, const Rows& rows) {
+void Outliers::keep_out(JointProblem& problem, const std::vector<std::size_t>& poses, const Rows& rows) {
   restore(problem);
-  for (std::size_t k = 0; k < left_out_.size(); ++k) {
-    if (left_out_[k].none()) continue;
+  for (const std::size_t k : poses) {
     left_out_[k] |= rows;
     changed_[k] = kChanges;
   }

@@ -34,8 +34,8 @@ class Outliers {
   /// Leaves these readings of a stretch out whatever each of its poses shows by itself: no pose of it is
   /// judged again.
   void keep_out(JointProblem& problem, const ShiftedStretch& stretch);
-  /// The same for every pose of which anything is left out.
-  void keep_out(JointProblem& problem, const Rows& rows);
+  /// The same in these poses.
+  void keep_out(JointProblem& problem, const std::vector<std::size_t>& poses, const Rows& rows);
 
   [[nodiscard]] bool any() const { return share() > 0; }
   /// Poses of which something is left out, of all poses.

@@ -30,8 +30,8 @@ struct BlameLimits {
   /// Limits from the misfits of all poses; those of observations that are left out count as beyond any limit,
   /// so that leaving out does not narrow the limits of the others.
   [[nodiscard]] static BlameLimits of(const PoseResiduals& residuals, std::span<const Rows> left_out);
-  /// For the noise of the weights, with which good readings agree, and sensors that are off together in a
-  /// group of poses by less than one pose can tell.
+  /// Limits in units of the noise that the weights state, with which good readings must agree: for a sensor
+  /// that is off in many poses, in each by too little to show.
   [[nodiscard]] static BlameLimits of_groups(const PoseResiduals& residuals);
   /// The largest misfit over its limit; above one something of the pose is to be left out. `t` as in
   /// PoseResiduals, one pose.

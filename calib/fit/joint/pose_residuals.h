@@ -23,12 +23,12 @@ struct PoseResiduals {
   double freedom{0};      ///< of those readings, less what each pose's own attitude and field took
   double fitted{0};       ///< unknowns of the fixed block that the readings had to tell
 
-  /// What "residual" means in every report: the root of the mean square of reading less prediction, nT, over
-  /// the readings of all twelve channels, each pose with its own best attitude and field; per degree of
-  /// freedom, so that it is the noise of a pose mean where the model is complete.
   [[nodiscard]] Eigen::Index scalar_row() const { return t.rows() - 2; }
   [[nodiscard]] Eigen::Index attitude_row() const { return t.rows() - 1; }
   [[nodiscard]] Observations of_pose(Eigen::Index k) const { return t.col(k).cast<double>().array(); }
+  /// What "residual" means in every report: the root of the mean square of reading less prediction, nT, over
+  /// the readings of all channels, each pose with its own best attitude and field; per degree of freedom, so
+  /// that it is the noise of a pose mean where the model is complete.
   [[nodiscard]] double residual_nT() const;
   /// The same on poses that the fixed block was not fitted to.
   [[nodiscard]] double unseen_nT() const;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "calib/fit/consensus.h"
 #include "calib/fit/joint/memory_variance.h"
@@ -212,24 +214,36 @@ bool may_leave_out_more(const RobustFit& fit, double most_left_out) {
   return fit.noise.sample_nT && fit.noise.noise_inflation <= 1 && most_left_out > 0;
 }
 
-/// The readings of the sensor that all blame lies on; none where it lies on more, or where the poses that are
-/// hit follow each other more than chance has it: that may be a step, or a source that comes and goes.
-Rows sensor_to_blame(const Outliers& outliers, int channels) {
+/// A sensor, and the poses in which it is to blame.
+struct SensorInPoses {
+  Rows rows;  ///< its readings
+  std::vector<std::size_t> poses;
+};
+
+/// The sensor that all blame lies on which was not there before; empty where it lies on more, or where the
+/// poses that are hit follow each other more than chance has it: that may be a step, or a source that comes
+/// and goes.
+std::optional<SensorInPoses> sensor_to_blame(const Outliers& outliers, const std::vector<Rows>& before,
+                                             int channels) {
   constexpr double kMost = 0.25;  // of the poses
   constexpr double kAlone = 0.5;  // of the poses that are hit, those before which none was
+  SensorInPoses out;
   Rows any;
-  double hit = 0, alone = 0;
-  bool before = false;
-  for (const Rows& rows : outliers.rows()) {
+  double alone = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const Rows rows = outliers.rows()[k] & ~before[k];
+    if (rows.none()) continue;
     any |= rows;
-    hit += rows.any() ? 1 : 0;
-    alone += rows.any() && !before ? 1 : 0;
-    before = rows.any();
+    alone += out.poses.empty() || out.poses.back() + 1 < k ? 1 : 0;
+    out.poses.push_back(k);
   }
-  if (hit == 0 || outliers.share() > kMost || alone < kAlone * hit) return {};
-  for (int i = 0; 3 * i < channels; ++i)
-    if ((any & ~rows_of_sensor(i)).none()) return rows_of_sensor(i);
-  return {};
+  const auto hit = static_cast<double>(out.poses.size());
+  if (hit == 0 || outliers.share() > kMost || alone < kAlone * hit) return std::nullopt;
+  for (int i = 0; 3 * i < channels; ++i) {
+    out.rows = rows_of_sensor(i);
+    if ((any & ~out.rows).none()) return out;
+  }
+  return std::nullopt;
 }
 
 /// The fit without the readings of a sensor that are off by little in many poses: together they draw the fit
@@ -242,9 +256,9 @@ RobustFit without_a_group(JointProblem& problem, RobustFit fit, double most_left
   JointProblem other = problem;
   Outliers outliers = fit.outliers;
   outliers.judge(other, fit.solution.state, fit.residuals, BlameLimits::of_groups(fit.residuals));
-  const Rows sensor = sensor_to_blame(outliers, problem.channels());
-  if (sensor.none()) return fit;
-  outliers.keep_out(other, sensor);
+  const auto sensor = sensor_to_blame(outliers, fit.outliers.rows(), problem.channels());
+  if (!sensor) return fit;
+  outliers.keep_out(other, sensor->poses, sensor->rows);
   bool unsettled = false;
   auto without = weighed(other, fit.solution.state, fit.noise, std::move(outliers), unsettled);
   if (!without || without->outliers.too_many() > 0 || excess(without->residuals) > kAgrees) return fit;

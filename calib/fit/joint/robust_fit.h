@@ -8,7 +8,8 @@
 ///
 /// It starts from all poses; where that, or the readings alone, show that some poses are far from the others,
 /// it starts once more from the poses that agree with each other (consensus.h), and keeps the more likely
-/// result.
+/// result. Where the readings kept do not agree down to the noise of the dwells, it also leaves out stretches
+/// that are shifted against the rest (stretch_scan.h) and a sensor that is off by little in scattered poses.
 namespace mgtd::calib::fit::joint {
 
 struct RobustFit {

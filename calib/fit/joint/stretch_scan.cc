@@ -128,16 +128,19 @@ double best_change(const JointProblem& problem, const JointState& state,
 struct Best {
   std::size_t from{0}, to{0};
   Shift shift{};
-  int windows{0};
+  double windows{0};
 };
 
+/// In a long run the ends of the windows move by a part of their length.
 Best best_window(const std::vector<Sums>& sums, int first, int count) {
+  constexpr std::size_t kPart = 64;
   const auto n = static_cast<double>(sums.size() - 1);
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest * n));
   const auto longest = static_cast<std::size_t>(kLongest * n);
   Best out;
-  for (std::size_t length = shortest; length <= longest; ++length) {
-    for (std::size_t from = 0; from + length < sums.size(); ++from) {
+  for (std::size_t length = shortest, step = 1; length <= longest; length += step) {
+    step = std::max<std::size_t>(length / kPart, 1);
+    for (std::size_t from = 0; from + length < sums.size(); from += step) {
       const Shift shift = shift_in(sums, from, from + length, first, count);
       ++out.windows;
       if (shift.chi2 > out.shift.chi2) out.from = from, out.to = from + length, out.shift = shift;
@@ -164,9 +167,9 @@ std::optional<ShiftedStretch> shifted_stretch(const JointProblem& problem, const
   const bool whole = all.shift.chi2 > best.shift.chi2 + kAllInstead;
   const Best& found = whole ? all : best;
   const int count = whole ? problem.channels() : 3;
-  const int tried = found.windows * (problem.sensors() + 1);
+  const double tried = found.windows * (problem.sensors() + 1);
   if (found.shift.norm < kSmallest || found.from < kAtTheEnd || found.to + kAtTheEnd > problem.poses.size() ||
-      found.shift.chi2 < stats::chi_square_limit(kFalse / std::max(tried, 1), count))
+      found.shift.chi2 < stats::chi_square_limit(kFalse / std::max(tried, 1.0), count))
     return std::nullopt;
   if (best_change(problem, solution.state, *information) >= found.shift.chi2) return std::nullopt;
   const unsigned long long mask = (1ULL << static_cast<unsigned>(count)) - 1;

@@ -11,8 +11,8 @@
 namespace mgtd::calib::fit::joint {
 
 /// calibration_tensor_sd() gives the standard deviation of each component of the tensor, in a uniform field
-/// of strength F, that follows from a covariance of the 48 parameters: root mean square over all attitudes,
-/// by what an error of the parameters makes of the corrected fields (field_response.h).
+/// of strength F, that follows from a covariance of the 12 parameters of each sensor: root mean square over
+/// all attitudes, by what an error of the parameters makes of the corrected fields (field_response.h).
 [[nodiscard]] Gradient calibration_tensor_sd(const PerSensor<sensor::SensorModel>& sensors,
                                              const sensor::Geometry& geometry,
                                              const Eigen::MatrixXd& covariance, double f_nT);

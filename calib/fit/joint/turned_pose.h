@@ -13,7 +13,7 @@ namespace mgtd::calib::fit::joint {
 
 /// Attitude and field of a pose as the table's angles and the scalar reference tell them.
 [[nodiscard]] inline Nuisance at_the_table(const JointPose& pose, const JointState& state) {
-  return {0, 0, 0, pose.f_weight > 0 ? pose.f_nT : state.f_nT};
+  return {0, 0, 0, pose.f_weight > 0 && pose.f_nT > 0 ? pose.f_nT : state.f_nT};
 }
 
 }  // namespace mgtd::calib::fit::joint

@@ -143,5 +143,30 @@ TEST(DataFaults, ATableSetByHandPassesAndItsUncertaintyIsTold) {
   EXPECT_TRUE(explained->notes.empty());
 }
 
+/// Ten degrees, the most that can be stated, is no answer that a table of a tenth of a degree must keep.
+TEST(DataFaults, AGoodTableStatedAsThePoorestIsFoundGood) {
+  const PoseTable run = simulate({.noise_nT = 0.3, .table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05}, 36, 121, 1);
+  const auto fit = fit_joint(run, {.table_sd_rad = to_rad(10)});
+  ASSERT_TRUE(fit) << fit.error().text();
+  EXPECT_NEAR(to_deg(fit->table_sd_rad), 0.1, 0.02);
+}
+
+/// Angles that are typed wrong are left out, and then neither their size nor their number counts.
+TEST(DataFaults, WrongAnglesAreInNoChiSquare) {
+  PoseTable run = simulate({.noise_nT = 0.3, .table_sd_rad = to_rad(0.1), .f_sd_nT = 0.05}, 36, 121, 1);
+  const auto right = fit_joint(run, {});
+  ASSERT_TRUE(right) << right.error().text();
+  constexpr double kWrong = 16;
+  for (std::size_t k = 40; k < 152; k += 7) *run.poses[k].azimuth_rad += to_rad(40);
+  const auto fit = fit_joint(run, {});
+  ASSERT_TRUE(fit) << fit.error().text();
+  EXPECT_EQ(fit->outliers.size(), static_cast<std::size_t>(kWrong));
+  EXPECT_NEAR(to_deg(fit->table_sd_rad), 0.1, 0.02);
+  EXPECT_NEAR(fit->chi2_table / fit->dof_table, 1, 0.05);
+  // Each of these attitudes told two of its four unknowns; the third, about the field, is still the table's.
+  EXPECT_NEAR(fit->dof, right->dof, 0.5 * kWrong);
+  EXPECT_NEAR(fit->chi2, fit->dof, 3 * std::sqrt(2 * fit->dof));
+}
+
 }  // namespace
 }  // namespace mgtd::calib::fit::joint
