@@ -195,18 +195,20 @@ Eigen::MatrixXd columns_of_pose(const tests::Criticism& c, Eigen::Index pose) {
   return own.times(Eigen::MatrixXd::Identity(rows, rows));
 }
 
-/// Whether the evidence of a family is that of one pose; nothing where it is spread. Beside a memory of the
-/// noise that of a step lies in the first pose after it; half of it stays when that is left out.
+/// Whether the evidence of a family is that of one pose, or would not do without it; nothing where it is
+/// spread. Beside a memory of the noise that of a step lies in the first pose after it; half of it stays when
+/// that is left out.
 std::optional<EvidenceOfOnePose> evidence_of_one_pose(const fit::joint::JointFit& fit,
                                                       const tests::Criticism& c, std::size_t f) {
-  constexpr double kStays = 0.25;
+  constexpr double kHeavy = 0.25, kStays = 0.25;
   tests::Candidate weighed;
   const std::vector<double> by_pose = c.evidence_by_pose(f);
   tests::weigh_poses(fit, by_pose, weighed);
-  if (weighed.largest_pose <= kOnePose) return std::nullopt;
+  if (weighed.largest_pose <= kHeavy) return std::nullopt;
   const auto pose = std::max_element(by_pose.begin(), by_pose.end()) - by_pose.begin();
   const double without = score_beside(columns_of_pose(c, pose), c.families[f], c.residual);
-  if (without >= kStays * c.families[f].winner().S) return std::nullopt;
+  const bool little = weighed.largest_pose > kOnePose && without < kStays * c.families[f].winner().S;
+  if (!little && c.would_name(f, without)) return std::nullopt;
   return EvidenceOfOnePose{weighed.poses.front(), c.families[f].candidate_effect->name};
 }
 

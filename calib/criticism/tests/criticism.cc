@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/criticism/tests/heavy_tails.h"
 #include "calib/criticism/tests/scan_refinement.h"
 #include "calib/fit/joint/pose_residuals.h"
 #include "calib/linear/parts.h"
@@ -118,6 +119,28 @@ void refine_alternatives(Criticism& out) {
   }
 }
 
+/// ScoredFamily::calibrated, if the score of its winning question were S.
+double calibrated_at(double S, const ScoredFamily& family, const NoiseReference& noise) {
+  const double priced =
+      noise.log10_p(S, family.winner().k, family.where().axes) + std::log10(family.where().alike);
+  return best_of(std::min(0.0, priced), family.asked);
+}
+
+/// A family that normal noise would make a name of is, where the tails are heavy, as probable as the scatter
+/// of the poses lets it be.
+void hold_against_tails(Criticism& c) {
+  constexpr double kHeavy = 0.5;     // excess kurtosis; of normal noise in 157 poses 0.0 +- 0.1
+  constexpr double kDecisive = -12;  // log10 p, that no tails make
+  for (std::size_t f = 0; f < c.families.size(); ++f) {
+    ScoredFamily& family = c.families[f];
+    if (family.calibrated < kDecisive || !c.rejects_named(f)) continue;
+    const TailsBeside tails = tails_beside(family, c.residual);
+    if (tails.excess_kurtosis < kHeavy) continue;
+    family.calibrated =
+        std::max(family.calibrated, calibrated_at(tails.score_by_scatter, family, c.noise.reference));
+  }
+}
+
 Criticism tested(const fit::joint::JointFit& of, Residual residual, const CandidateEffects& candidate_effects,
                  std::uint64_t seed, const Rates* before) {
   Criticism out{.residual = std::move(residual), .tested = std::make_shared<const fit::joint::JointFit>(of)};
@@ -140,6 +163,7 @@ Criticism tested(const fit::joint::JointFit& of, Residual residual, const Candid
   rate(before, seed, out);
   find_instants(out);
   refine_alternatives(out);
+  hold_against_tails(out);
   std::stable_sort(out.families.begin(), out.families.end(),
                    [](const ScoredFamily& a, const ScoredFamily& b) { return a.calibrated < b.calibrated; });
   judge_size(out);
@@ -214,6 +238,9 @@ std::vector<double> Criticism::evidence_by_pose(std::size_t family) const {
 
 bool Criticism::rejects_named(std::size_t family) const {
   return family < families.size() && below(best_of(families[family].calibrated, rates.best), kNamedAlarm);
+}
+bool Criticism::would_name(std::size_t family, double S) const {
+  return below(best_of(calibrated_at(S, families[family], noise.reference), rates.best), kNamedAlarm);
 }
 bool Criticism::rejects_map() const {
   return !maps.empty() && below(best_of(maps.front().log10_p, static_cast<double>(maps.size())), kMapAlarm);

@@ -34,6 +34,8 @@ struct Criticism {
   /// Evidence for one of the families, pose by pose.
   [[nodiscard]] std::vector<double> evidence_by_pose(std::size_t family) const;
   [[nodiscard]] bool rejects_named(std::size_t family = 0) const;
+  /// Whether the winning question of a family would be a name with a score of S.
+  [[nodiscard]] bool would_name(std::size_t family, double S) const;
   [[nodiscard]] bool rejects_map() const;
   [[nodiscard]] bool rejects_omnibus() const;
   [[nodiscard]] bool rejects() const { return rejects_named() || rejects_map() || rejects_omnibus(); }

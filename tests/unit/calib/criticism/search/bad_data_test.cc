@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string_view>
 
 #include "calib/criticism/search/explain.h"
 #include "calib/criticism/search/improve.h"
@@ -109,30 +111,39 @@ TEST(GoodData, IsNotCalledBad) {
   EXPECT_EQ(r->finding, Finding::pass) << report::sentence(*r);
 }
 
+PoseTable run_of_kind(std::string_view name, std::uint64_t seed) {
+  const auto& kinds = testing::real_kinds();
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
+  if (kind == kinds.end()) throw std::runtime_error("no such kind");
+  return kind->make(seed).table;
+}
+
 /// One reading in ten is off: these seeds once got names, EXPLAINED one of them.
 TEST(GrossReadings, InMostPosesGetNoName) {
-  const auto& kinds = testing::real_kinds();
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [](const auto& k) { return k.name == "gross-many"; });
-  ASSERT_NE(kind, kinds.end());
   for (const std::uint64_t seed : {30005U, 30006U, 30043U}) {
-    const testing::RealRun run = kind->make(seed);
-    const auto r = explain(run.table, {});
+    const auto r = explain(run_of_kind("gross-many", seed), {});
     ASSERT_TRUE(r) << r.error().text();
     EXPECT_EQ(r->finding, Finding::bad_data) << seed << ": " << report::sentence(*r);
     EXPECT_TRUE(r->named.empty()) << seed;
   }
 }
 
+/// Of noise with heavy tails one pose in the tail makes half of the evidence for a step just before the end
+/// or for a dipole in the middle of the array, and what is left of it without that pose is chance. These
+/// seeds once got names, EXPLAINED the last.
+TEST(GoodData, OnePoseInTheTailOfTheNoiseGetsNoName) {
+  for (const std::uint64_t seed : {40005U, 40006U, 40066U, 40170U}) {
+    const auto r = explain(run_of_kind("visit-student", seed), {});
+    ASSERT_TRUE(r) << r.error().text();
+    EXPECT_TRUE(r->named.empty()) << seed << ": " << report::sentence(*r);
+    EXPECT_TRUE(r->finding == Finding::pass || r->finding == Finding::bad_data) << seed;
+  }
+}
+
 /// Sensor 4 is off by 300 nT in ten poses. A step of the offset describes a part of it, and leaves 30 nT
 /// where the fit without these poses leaves 0.02.
 TEST(GoodData, ASensorThatIsOffForTenPosesIsLeftOutAndGetsNoName) {
-  const auto& kinds = testing::real_kinds();
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [](const auto& k) { return k.name == "gross-sensor"; });
-  ASSERT_NE(kind, kinds.end());
-  const testing::RealRun run = kind->make(107);
-  const auto r = explain(run.table, {});
+  const auto r = explain(run_of_kind("gross-sensor", 107), {});
   ASSERT_TRUE(r) << r.error().text();
   EXPECT_EQ(r->finding, Finding::pass) << report::sentence(*r);
   EXPECT_TRUE(r->named.empty());

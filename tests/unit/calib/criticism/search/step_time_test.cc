@@ -39,6 +39,13 @@ TEST(StepTime, ALargeStepOfASensorIsNoWalk) {
   }
 }
 
+/// Seven poses share its evidence: without one of them the others are enough.
+TEST(StepTime, AStepBeforeTheLastSevenPosesIsNamed) {
+  const ExplainReport r = explained_step(stepping(0.12, 150, 0, 4));
+  EXPECT_EQ(r.finding, Finding::explained) << report::sentence(r);
+  EXPECT_EQ(r.named, std::vector<std::string>{"axis.offset.step"});
+}
+
 /// More than a quarter of the poses come after the step. The one in whose dwell it came fits neither side.
 TEST(StepTime, AStepWithinADwellIsNotBadData) {
   for (const std::uint64_t seed : {1U, 2U}) {
