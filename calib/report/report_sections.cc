@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/report/calibration_text.h"
 #include "calib/report/figures/escaped.h"
 #include "calib/report/fit_reasons.h"
 #include "calib/report/html.h"
@@ -116,16 +117,14 @@ std::string parameters_section(const ReportContent& c) {
       double value = c.fit.calibration.sensors[static_cast<std::size_t>(s)].parameters()[k];
       double sd = std::sqrt(c.fit.calibration.covariance(slot, slot));
       if (!scale && !offset) value = to_deg(value), sd = to_deg(sd);
-      row.push_back(scale    ? fmt::format("{:.6f} ± {:.1g}", value, sd)
-                    : offset ? fmt::format("{:.3f} ± {:.2g}", value, sd)
-                             : fmt::format("{:.5f} ± {:.1g}", value, sd));
+      row.push_back(with_sd(value, sd));
     }
     rows.push_back(std::move(row));
   }
   Rows effects;
   for (const calibration::CalibratedEffect& e : c.fit.calibration.effects) {
     for (const calibration::EffectCoefficient& x : e.coefficients)
-      effects.push_back({e.effect, x.name, fmt::format("{:+.5g} ± {:.2g} {}", x.value, x.sd, x.unit)});
+      effects.push_back({e.effect, x.name, with_sd(x.value, x.sd) + " " + x.unit});
   }
   std::string out = "<h2>Parameters</h2>" + html_table(head, rows, false);
   if (!effects.empty())

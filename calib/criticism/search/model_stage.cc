@@ -48,6 +48,9 @@ Result<fit::joint::JointFit> fit_under_same_weights(const PoseTable& table, cons
   out.problem = std::move(*problem);
   out.state = std::move(solved->state);
   out.chi2 = solved->reduced.cost.of_model();
+  auto covariance = fit::joint::covariance_of(out, solved->reduced);
+  if (!covariance) return tl::unexpected(covariance.error());
+  out.covariance = *std::move(covariance);
   return out;
 }
 

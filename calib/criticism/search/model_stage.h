@@ -20,7 +20,8 @@ struct ModelStage {
 [[nodiscard]] Result<ModelStage> model_stage(const PoseTable& table, const fit::FitOptions& options);
 
 /// The same poses with other effects, under the weights of `stage`: chi-squares of the two compare.
-/// Nothing is searched, no observation is left out anew.
+/// Nothing is searched, no observation is left out anew; the Birge ratio is that of `stage`, so that the
+/// covariances compare too.
 [[nodiscard]] Result<fit::joint::JointFit> fit_under_same_weights(
     const PoseTable& table, const ModelStage& stage, const std::vector<effects::EffectPtr>& effects);
 

@@ -43,6 +43,22 @@ TEST(ModelChange, TheFallIsTheOneThatWasPredictedAndUnseenPosesAgree) {
   EXPECT_THAT(change->model, ::testing::ElementsAre("axis.offset.temperature@s3.z"));
 }
 
+/// The covariance of the narrower model is its own: what the effect costs is the same from either side.
+TEST(ModelChange, UnderTheSameWeightsUncertaintiesCompare) {
+  const PoseTable table = warm_and_bent(1);
+  const auto stage =
+      model_stage(table, {.effects = {effect("axis.offset.temperature@s3.z"), effect("axis.cubic@s1.x")}});
+  ASSERT_TRUE(stage) << stage.error().text();
+  const auto narrow = fit_under_same_weights(table, *stage, {});
+  ASSERT_TRUE(narrow) << narrow.error().text();
+  const VariancePrice price = variance_price(*narrow, stage->fit);
+  EXPECT_GT(price.sd_ratio, 1.5);
+  const Eigen::ArrayXd ratio =
+      (stage->fit.covariance.diagonal().head(48).array() / narrow->covariance.diagonal().head(48).array())
+          .sqrt();
+  EXPECT_NEAR(ratio.maxCoeff(), price.sd_ratio, 1e-3 * price.sd_ratio);
+}
+
 /// What is not there brings the fall of one coefficient's chance, and costs variance.
 TEST(ModelChange, AnEffectThatIsNotThereBuysNothingAndHasItsPrice) {
   const PoseTable table = hidden_run({}, 2);
