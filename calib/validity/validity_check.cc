@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit/joint/data_faults.h"
 #include "calib/fit/joint/joint_cost.h"
 #include "calib/fit/joint/joint_errors.h"
 #include "calib/fit/joint/joint_report.h"
@@ -202,6 +203,8 @@ Result<Settled> settle(const calibration::Calibration& c, const PoseTable& poses
   report.noise_nT = rms_noise(*problem);
   const double f_nT =
       options.field_nT.value_or(c.reference.f_nT.value_or(fit::joint::start_field_nT(*problem, joint)));
+  if (const auto units = fit::joint::check_units(*problem, f_nT); !units)
+    return tl::unexpected(units.error());
   Settled out{.problem = std::move(*problem), .placed = {}, .outliers = fit::joint::Outliers(kMostLeftOut)};
   auto placed = fit::joint::placed_state(out.problem, c.sensors, f_nT);
   if (!placed) return tl::unexpected(placed.error());

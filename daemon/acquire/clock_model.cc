@@ -69,7 +69,6 @@ void ClockModel::start(const Arrival& first) {
 }
 
 void ClockModel::contradicted(const Arrival& by) {
-  ++contradictions_;
   forget();
   start(by);
 }

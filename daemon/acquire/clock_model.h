@@ -80,8 +80,6 @@ class ClockModel {
   [[nodiscard]] double index_of(double t_s) const { return k0_ + (t_s - line_.t_s) / line_.period_s; }
   [[nodiscard]] double period_s() const { return line_.period_s; }
   [[nodiscard]] Bound bound(double k) const;
-  /// Times that the set was started anew because no line explained the arrivals.
-  [[nodiscard]] std::uint64_t contradictions() const { return contradictions_; }
   [[nodiscard]] ClockState state() const;
 
  private:
@@ -114,7 +112,7 @@ class ClockModel {
   int blocks_{0};                ///< that bound from below since the start
   double step_s_{0};
   double tail_s_{0};  ///< mean, of the latest samples in a block over the one that bounds
-  std::uint64_t samples_{0}, contradictions_{0};
+  std::uint64_t samples_{0};
   double residual_s_{0}, last_delay_s_{0};
 };
 

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "calib/criticism/tests/exchange_in_run.h"
 #include "calib/report/change_report.h"
 #include "calib/report/diff_report.h"
+#include "calib/report/rearrangement_text.h"
 #include "daemon/cli/calibration_file.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/work_progress.h"
@@ -46,19 +48,23 @@ int run_diff(const Session& session, const DiffArguments& args) {
       fmt::print(stderr, "warning: {} fails its own checks; see mgt fit\n", c == &*a ? args.a : args.b);
   }
   const calib::validity::DiffReport found = calib::validity::diff(*a, *b);
+  std::vector<std::string> remarks = calib::report::remarks_of(found);
+  if (const auto exchanged = calib::criticism::tests::exchanged_since(*a, *b))
+    remarks.push_back(fmt::format("{}: each has the scales, angles and offsets that the other had",
+                                  calib::report::rearrangement_text(*exchanged)));
   if (session.json) {
     print_json({{"schema", "mgt.diff/1"},
                 {"a", a->id},
                 {"b", b->id},
                 {"changed", found.changed},
                 {"conclusion", calib::report::conclusion_text(found)},
-                {"remarks", calib::report::remarks_of(found)},
+                {"remarks", remarks},
                 {"change", calib::report::to_json(found.change)}});
   } else {
     std::string text =
         fmt::format("{}\n\n{}\n", calib::report::conclusion_text(found),
                     calib::report::change_table(found.change, kChangesShown, table_width(session)));
-    for (const std::string& remark : calib::report::remarks_of(found)) text += "note: " + remark + "\n";
+    for (const std::string& remark : remarks) text += "note: " + remark + "\n";
     print_text(session, text);
   }
   return found.changed ? 1 : 0;

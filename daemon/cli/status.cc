@@ -12,6 +12,7 @@
 #include "daemon/cli/age_text.h"
 #include "daemon/cli/ask.h"
 #include "daemon/cli/progress.h"
+#include "daemon/run/preflight.h"
 #include "proto/status_codec.h"
 
 namespace mgtd::daemon::cli {
@@ -158,17 +159,22 @@ void write_array(Text to, const nlohmann::json& array) {
                  tells.substr(0, tells.find("; ")));
 }
 
-/// Explains a wide skew bound or many gaps. The limit of the skew is that of a run's preflight.
+/// Explains a wide skew bound or many gaps. The limit of the skew is that of a run's preflight, which has
+/// none to speak of faster than real time.
 void write_stream_remarks(Text to, const nlohmann::json& sampler, double speed_up) {
-  constexpr double kMostSkew_s = 0.04, kMostMissing = 0.01;
+  constexpr double kMostMissing = 0.01;
+  const double most_skew_s = run::PreflightConfig{}.max_skew_s;
   const double skew_s = sampler.at("skew_bound_s").is_null() ? 0 : sampler.at("skew_bound_s").get<double>();
-  if (skew_s > kMostSkew_s)
-    fmt::format_to(
-        to, "\n          the sample times are less certain than a run accepts (limit {:.0f} ms): {}",
-        1e3 * kMostSkew_s,
-        speed_up > 1 ? "in a simulation faster than real time that is the delay of this computer"
-                     : "this passes within minutes of a start; if not, look at the load of this computer, "
-                       "and lower the converters' latency timers and state them in delivery_s");
+  if (skew_s > most_skew_s && speed_up > 1)
+    fmt::format_to(to,
+                   "\n          that is the delay of this computer times the speed of the simulation; a run "
+                   "goes on beside it");
+  else if (skew_s > most_skew_s)
+    fmt::format_to(to,
+                   "\n          the sample times are less certain than a run accepts (limit {:.0f} ms): this "
+                   "passes within minutes of a start; if not, look at the load of this computer, and lower "
+                   "the converters' latency timers and state them in delivery_s",
+                   1e3 * most_skew_s);
   const double missing = sampler.at("gaps").get<double>();
   const double share = missing / std::max(1.0, missing + sampler.at("epochs").get<double>());
   if (share > kMostMissing)

@@ -57,8 +57,9 @@ tl::expected<toml::table, std::string> parse_toml(std::string_view text, std::st
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    return tl::unexpected(fmt::format("{}:{}:{}: {}", file, error.source().begin.line,
-                                      error.source().begin.column, error.description()));
+    return tl::unexpected(
+        fmt::format("{}:{}:{}: {}; text stands between quotes, a number has a decimal point", file,
+                    error.source().begin.line, error.source().begin.column, error.description()));
   }
 }
 

@@ -191,17 +191,17 @@ NextPoses next_poses(const RunEvidence& e, double minutes_left, int looks_left) 
     out.judgement.next = finding == Finding::pass ? "nothing is left to explain"
                                                   : "the verdict is clear: mgt improve adds what it names";
   } else if (finding == Finding::bad_data) {
-    out.judgement.next = "more poses do not mend these: mgt explain says which contradict the others";
+    out.judgement.next = "more poses would not help: mgt explain lists the poses that contradict the others";
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::law) {
     out.judgement.next =
         e.formulas_account_for_all()
             ? "a formula accounts for everything: mgt discover says how to keep it"
             : fmt::format("a formula accounts for the rest: {} says how to keep it", discover_command(e));
   } else if (!open && e.discovered && e.discovered->finding == LawFinding::pass && !e.beside.empty()) {
-    out.judgement.next =
-        fmt::format("nothing is left beside {}: mgt add says what it buys", fmt::join(e.model, " and "));
+    out.judgement.next = fmt::format("{} account{} for everything: mgt add shows by how much the error falls",
+                                     fmt::join(e.model, " and "), e.model.size() == 1 ? "s" : "");
   } else if (looks_left <= 0) {
-    out.judgement.next = fmt::format("the run was judged {} times, and that is the most", kMostJudgements);
+    out.judgement.next = fmt::format("the run has been judged {} times, which is the limit", kMostJudgements);
   } else if (open) {
     settle(*e.next, minutes_left, out);
   } else {

@@ -142,7 +142,7 @@ std::string remedy(const LimitsCost& cost) {
   if (cost.random_enough)
     out += fmt::format("; or measure more: random = {} in [run] instead of {} makes up for the limits",
                        *cost.random_enough, cost.random);
-  else
+  else if (cost.random > 0)
     out += fmt::format("; four times the {} random poses would not make up for the limits", cost.random);
   return out;
 }
@@ -187,7 +187,10 @@ Result<std::optional<LimitsCost>> limits_cost(const plan::PlanOptions& options, 
     plan::PlanOptions more = options;
     more.random = static_cast<int>(std::lround(times * options.random));
     const auto longer = expected(more, limits, request);
-    if (!longer || !longer->determined || groups_of(*longer, *without).front().times() > 1) continue;
+    if (!longer || !longer->determined) continue;
+    const std::vector<LimitsCost::Group> groups = groups_of(*longer, *without);
+    if (std::any_of(groups.begin(), groups.end(), [](const auto& group) { return group.times() > 1; }))
+      continue;
     out.random_enough = more.random;
     break;
   }

@@ -150,7 +150,10 @@ void RunExecutor::act(const ProposeCalibration& action, Stamp now) {
       fail(ErrorCode::internal, fmt::format("calibration {} was not solved here", action.calibration_id));
   if (solved_ && solved_->id == action.calibration_id)
     proposed = store_.propose(*solved_, file_->header().run_id, now.wall);
-  if (proposed) proposed = file_->set_document("proposed", calib::calibration::to_json_text(*solved_));
+  if (proposed) {
+    if (auto kept = file_->set_document("proposed", calib::calibration::to_json_text(*solved_)); !kept)
+      hooks_.warn("the proposal in the run file", kept.error().text(), now.mono);
+  }
   run_.answer(CalibrationProposed{std::move(proposed)});
 }
 

@@ -281,12 +281,10 @@ void RunFsm::on(const DeviceBack& back) {
 void RunFsm::advance(phase::Waiting&) {
   if (lost_.empty()) return go_on();
   if (timed_out(config_.wait.lost_max_s))
-    finish(
-        RunState::failed,
-        fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
-                    lost_.begin()->first, config_.wait.lost_max_s, lost_.begin()->second,
-                    lost_.contains(Slot::table().name()) ? "; it cannot be reached and may still move" : "",
-                    kept()));
+    finish(RunState::failed,
+           fmt::format("{} did not come back within {:.0f} s ({}){}; reconnect it and resume the run: {}",
+                       lost_.begin()->first, config_.wait.lost_max_s, lost_.begin()->second,
+                       lost_.contains(Slot::table().name()) ? "; " + std::string(kUnreachable) : "", kept()));
 }
 
 std::string RunFsm::in_status() const {

@@ -7,8 +7,8 @@
 #include "proto/error.h"
 #include "proto/time.h"
 
-/// A LineStream is a blocking connection to the daemon, line by line, for the operator's tool. Every wait has
-/// a limit.
+/// A LineStream is a blocking connection to the daemon, line by line, for the operator's tool. Every wait for
+/// a line has a limit; to connect takes as long as the system allows.
 namespace mgtd::daemon::serve {
 
 class LineStream {

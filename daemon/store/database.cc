@@ -8,6 +8,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "daemon/store/run_schema.h"
+
 namespace mgtd::daemon::store {
 namespace {
 
@@ -178,8 +180,7 @@ Error Database::error(int code) const {
       return {ErrorCode::bad_input, fmt::format("{} is not a run file (no SQLite database)", file),
               "name a *.mgtrun file written by mgtd or mgt import"};
     case SQLITE_CORRUPT:
-      return {ErrorCode::bad_input, fmt::format("{} is damaged: {}", file, said),
-              "rescue what is readable with: sqlite3 FILE .recover"};
+      return {ErrorCode::bad_input, fmt::format("{} is damaged: {}", file, said), rescue_remedy(file)};
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return {ErrorCode::state, fmt::format("{} is being written by another program", file),
@@ -203,7 +204,7 @@ Error Database::error(int code) const {
     }
     case SQLITE_ERROR:  // the tables are others than this program makes
       return {ErrorCode::bad_input, fmt::format("{} is damaged, or another program wrote it: {}", file, said),
-              "rescue what is readable with: sqlite3 FILE .recover"};
+              rescue_remedy(file)};
     default:
       return {ErrorCode::internal, fmt::format("{}: {}", file, said),
               "try a copy of the file on another disk"};

@@ -44,6 +44,7 @@ void Journal::start_file() {
     file_.fd = ::open(file_.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0640);
   } while (file_.fd < 0 && errno == EEXIST);
   if (file_.fd < 0) return stop(refused(errno, "create"));
+  file_.bytes = file_.header = 0;  // no longer those of the file before
   RawLogHeader names = config_.header;
   if (names.run_id.empty()) names.run_id = file_.path.stem().string();
   const std::string header = encode_header(names);

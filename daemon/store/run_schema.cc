@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "daemon/store/pose_row.h"
 #include "proto/number.h"
+#include "proto/shell_word.h"
 
 namespace mgtd::daemon::store {
 namespace {
@@ -199,6 +201,13 @@ Result<void> create_run_schema(Database& db, const RunHeader& header) {
   });
 }
 
+std::string rescue_remedy(const std::string& file) {
+  return fmt::format(
+      "rescue what is readable with: (echo 'PRAGMA application_id={}; PRAGMA user_version={};'; sqlite3 {} "
+      ".dump | sed 's/^ROLLBACK;.*/COMMIT;/') | sqlite3 rescued.mgtrun",
+      kRunApplicationId, kRunSchemaVersion, shell_word(file));
+}
+
 Result<RunHeader> check_run_schema(const Database& db, const std::string& file) {
   if (auto ok = check_identity(db, file); !ok) return tl::unexpected(ok.error());
   auto check = db.prepare("PRAGMA quick_check(1)");
@@ -206,8 +215,9 @@ Result<RunHeader> check_run_schema(const Database& db, const std::string& file) 
   const auto row = check->step();
   if (!row) return tl::unexpected(row.error());
   if (*row && check->text(0) != "ok") {
-    return fail(ErrorCode::bad_input, fmt::format("{} is damaged: {}", file, check->text(0)),
-                "rescue what is readable with: sqlite3 FILE .recover");
+    std::string damage = check->text(0);
+    std::replace(damage.begin(), damage.end(), '\n', ' ');
+    return fail(ErrorCode::bad_input, fmt::format("{} is damaged ({})", file, damage), rescue_remedy(file));
   }
   auto meta = read_meta(db);
   if (!meta) return tl::unexpected(meta.error());

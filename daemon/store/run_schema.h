@@ -15,6 +15,9 @@ inline constexpr int kRunSchemaVersion = 2;
 inline constexpr int kCrossSchemaVersion = 1;
 
 [[nodiscard]] Result<void> create_run_schema(Database& db, const RunHeader& header);
+/// What to do about a damaged file. `sqlite3 FILE .recover` is not compiled into every sqlite3, .dump is; it
+/// leaves out the two numbers by which a run file is known, and ends with ROLLBACK when it met damage.
+[[nodiscard]] std::string rescue_remedy(const std::string& file);
 /// Not a run file, a newer schema, damage: each is refused by name.
 [[nodiscard]] Result<RunHeader> check_run_schema(const Database& db, const std::string& file);
 

@@ -47,6 +47,16 @@ TEST(Check, ThePosesOfTheFitAreNoTest) {
               ::testing::Not(remark));
 }
 
+/// An array is not called changed because its readings stand in another unit.
+TEST(Check, ReadingsInAnotherUnitAreRefusedAsByTheFit) {
+  PoseTable other = dozen(rig(), 8);
+  for (Pose& pose : other.poses)
+    for (Eigen::Vector3d& y : pose.y_nT) y /= 1000;
+  const auto report = check(calibrated(rig(), 7), other, {});
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error().message, HasSubstr("look like uT"));
+}
+
 TEST(Check, RemountedArrayIsStillValid) {
   Simulation later = rig();
   const Eigen::Matrix3d Q = testing::passive(to_rad(40), 2) * testing::passive(to_rad(-2), 0);

@@ -91,7 +91,7 @@ TEST(JudgeRun, NothingIsMeasuredThatDoesNotPay) {
 TEST(JudgeRun, LooksComeToAnEnd) {
   const NextPoses out = choice({step("more", 5, 0.99, true)}, 30, 0);
   EXPECT_TRUE(out.poses.empty());
-  EXPECT_THAT(out.judgement.next, HasSubstr("judged 5 times, and that is the most"));
+  EXPECT_THAT(out.judgement.next, HasSubstr("judged 5 times, which is the limit"));
 }
 
 TEST(JudgeRun, AClearVerdictEndsIt) {
@@ -218,7 +218,7 @@ TEST(JudgeRun, SaysBesideWhichEffectsTheRestWasSearched) {
   NextPoses out = next_poses(evidence, 30, 4);
   EXPECT_EQ(out.judgement.found, "UNKNOWN; for the rest LIBRARY: axis.cubic@s3.z; for the rest PASS");
   EXPECT_THAT(out.judgement.next,
-              HasSubstr("nothing is left beside axis.gain.step@s1.x,t=0.4 and axis.cubic@s3.z"));
+              HasSubstr("axis.gain.step@s1.x,t=0.4 and axis.cubic@s3.z account for everything"));
   evidence.discovered->finding = calib::discovery::LawFinding::law;
   evidence.discovered->laws.emplace_back();
   evidence.discovered->laws.front().formulas.resize(1);

@@ -168,7 +168,7 @@ TEST(RunFsmInterruption, ATableThatStaysAwayMayStillMoveWhenTheRunHasFailed) {
   bench.lose(Slot::table());
   bench.run(40);
   ASSERT_TRUE(bench.finished);
-  EXPECT_THAT(bench.finished->message, HasSubstr("it cannot be reached and may still move"));
+  EXPECT_THAT(bench.finished->message, HasSubstr("the table cannot be reached and may still move"));
 }
 
 TEST(RunFsmInterruption, WhileItWaitsTheRunSaysWhatTheLinkSays) {

@@ -173,6 +173,7 @@ TEST(Journal, FullDiskStopsRecordingOnceAndItGoesOnByItself) {
     EXPECT_FALSE(journal.take_error());
     EXPECT_TRUE(journal.trouble());
   }
+  const std::uint64_t lost = journal.bytes_lost();
   {
     const FullDisk full(0);
     journal.tick(at(100));
@@ -180,6 +181,7 @@ TEST(Journal, FullDiskStopsRecordingOnceAndItGoesOnByItself) {
     EXPECT_FALSE(journal.take_error()) << "said once";
   }
   EXPECT_EQ(rotated_files(config.directory, "r1.", ".raw").size(), 1U) << "a try leaves nothing behind";
+  EXPECT_EQ(journal.bytes_lost(), lost) << "nor does it lose what the file before holds";
   EXPECT_GT(payloads(first, false).size(), 300U);
   journal.tick(at(105));
   EXPECT_FALSE(journal.recording()) << "tried every ten seconds";
