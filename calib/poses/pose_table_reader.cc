@@ -119,6 +119,12 @@ Result<void> PoseTableReader::read_header() {
         "mgt import --columns MAP.toml takes tables of other programs");
   }
   const std::vector<TableCell> header = cells_of(line_, ',');
+  if (parse_number(header.front().text)) {
+    return complain(
+        header.front().column, "numbers stand where the names of the columns are needed",
+        "begin the file with a header row (docs/pose-table.md has the names), or take its columns by "
+        "their numbers: mgt import --columns MAP.toml");
+  }
   for (const TableCell& cell : header) {
     if (cell.text.empty()) return complain(cell.column, "a column has no name", "name it in the header row");
     if (column_of(cell.text) != kNowhere) {

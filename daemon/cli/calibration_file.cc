@@ -10,12 +10,13 @@
 namespace mgtd::daemon::cli {
 namespace {
 
-/// Told by content.
+/// Told by content, or where there is none by the name.
 Result<bool> is_calibration(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   const auto first = text->find_first_not_of(" \t\r\n");
-  return first != std::string::npos && (*text)[first] == '{';
+  if (first == std::string::npos) return path.ends_with(".json");
+  return (*text)[first] == '{';
 }
 
 /// Of a CAL.json or a run file; empty for a pose table.

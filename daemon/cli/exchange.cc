@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calib/fit/joint/data_faults.h"
+#include "calib/fit/joint/joint_setup.h"
 #include "calib/poses/pose_columns.h"
 #include "calib/poses/pose_table.h"
 #include "calib/poses/table_import.h"
@@ -58,6 +60,19 @@ std::string poses_text(const PoseTable& table) {
   return fmt::format("{} pose{}", table.poses.size(), table.poses.size() == 1 ? "" : "s");
 }
 
+/// Readings and field that no site has: said now, since a run file has no columns to multiply.
+void doubt_units(const PoseTable& table, const calib::sensor::Geometry& geometry, bool mapped) {
+  calib::fit::joint::JointOptions options;
+  options.geometry = geometry;
+  const auto problem = calib::fit::joint::joint_problem(table, options);
+  if (!problem) return;  // of too few poses, say
+  const auto units =
+      calib::fit::joint::check_units(*problem, calib::fit::joint::start_field_nT(*problem, options));
+  if (!units)
+    fmt::print(stderr, "warning: {}; {}, and import again\n", units.error().message,
+               mapped ? "say so with unit in the map" : units.error().remedy);
+}
+
 int run_import(const Session& session, const ExchangeArguments& args) {
   const auto source = imported(args);
   if (!source) return print_error(session, source.error());
@@ -69,6 +84,7 @@ int run_import(const Session& session, const ExchangeArguments& args) {
   if (auto done = store::import_poses(table, args.to, header_of(table, args, *geometry)); !done)
     return print_error(session, done.error());
   tell_written(poses_text(table), args.to);
+  doubt_units(table, *geometry, !args.columns.empty());
   if (session.json)
     print_json({{"schema", "mgt.import/1"}, {"poses", table.poses.size()}, {"output", args.to}});
   return 0;

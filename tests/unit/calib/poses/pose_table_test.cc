@@ -122,6 +122,12 @@ TEST(PoseTable, AMissingColumnIsNamed) {
   EXPECT_THAT(error_of(text).message, HasSubstr("poses.csv:1:1: missing column: s3_y_nT"));
 }
 
+TEST(PoseTable, ATableWithoutAHeaderIsToldSo) {
+  const Error error = parse_pose_table("0.0,20000,-1000,45000\n0.0,20001,-1002,45003\n", "p.csv").error();
+  EXPECT_THAT(error.message, HasSubstr("p.csv:1:1: numbers stand where the names"));
+  EXPECT_THAT(error.remedy, HasSubstr("header row"));
+}
+
 TEST(PoseTable, AColumnNamedTwiceIsRefused) {
   EXPECT_THAT(error_of(small(",f_nT,f_nT", ",1,2")).message, HasSubstr("'f_nT' stands here twice"));
 }

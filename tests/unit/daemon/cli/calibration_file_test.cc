@@ -57,6 +57,15 @@ TEST(CalibrationFile, ARunOfOtherPlacesIsRefused) {
   EXPECT_TRUE(same_array(pair.calibration, "a.json", source)) << "a pose table has no places";
 }
 
+TEST(CalibrationFile, AnEmptyFileIsNoPoseTableIfItsNameSaysCalibration) {
+  const test::TempDir dir;
+  const std::string path = (dir / "empty.json").string();
+  { const std::ofstream empty(path); }
+  const auto read = calibration_of(path, {});
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().text(), ::testing::Not(HasSubstr("header row")));
+}
+
 TEST(CalibrationFile, AHistoryIsOfOneArrayAndHasDates) {
   const Pair pair;
   calib::calibration::Calibration later = pair.calibration;
