@@ -42,6 +42,8 @@ std::string origin(const calibration::Calibration& c) {
 
 std::string with_sd(double value, double sd) {
   if (!(sd > 0)) return fmt::format("{:.6g}", value);
+  constexpr double kLeast = 1e-8;  // below it decimals show nothing
+  if (sd < kLeast) return fmt::format("{:.5g} ± {:.2g}", value, sd);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 9);
   return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, sd, decimals);
 }

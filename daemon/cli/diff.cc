@@ -50,7 +50,7 @@ int run_diff(const Session& session, const DiffArguments& args) {
   const calib::validity::DiffReport found = calib::validity::diff(*a, *b);
   std::vector<std::string> remarks = calib::report::remarks_of(found);
   if (const auto exchanged = calib::criticism::tests::exchanged_since(*a, *b))
-    remarks.push_back(fmt::format("{}: each has the scales, angles and offsets that the other had",
+    remarks.push_back(fmt::format("{}: the scales, angles and offsets have moved with them",
                                   calib::report::rearrangement_text(*exchanged)));
   if (session.json) {
     print_json({{"schema", "mgt.diff/1"},

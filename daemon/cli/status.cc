@@ -168,7 +168,7 @@ void write_stream_remarks(Text to, const nlohmann::json& sampler, double speed_u
   if (skew_s > most_skew_s && speed_up > 1)
     fmt::format_to(to,
                    "\n          that is the delay of this computer times the speed of the simulation; a run "
-                   "goes on beside it");
+                   "accepts up to 60 s");
   else if (skew_s > most_skew_s)
     fmt::format_to(to,
                    "\n          the sample times are less certain than a run accepts (limit {:.0f} ms): this "

@@ -58,7 +58,7 @@ tl::expected<toml::table, std::string> parse_toml(std::string_view text, std::st
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     return tl::unexpected(
-        fmt::format("{}:{}:{}: {}; text stands between quotes, a number has a decimal point", file,
+        fmt::format("{}:{}:{}: {}; put text in quotes, and write decimals with a point, not a comma", file,
                     error.source().begin.line, error.source().begin.column, error.description()));
   }
 }

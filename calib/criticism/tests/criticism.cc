@@ -130,7 +130,7 @@ double calibrated_at(double S, const ScoredFamily& family, const NoiseReference&
 /// of the poses lets it be.
 void hold_against_tails(Criticism& c) {
   constexpr double kHeavy = 0.5;     // excess kurtosis; of normal noise in 157 poses 0.0 +- 0.1
-  constexpr double kDecisive = -12;  // log10 p, that no tails make
+  constexpr double kDecisive = -12;  // log10 p, that tails hardly make
   for (std::size_t f = 0; f < c.families.size(); ++f) {
     ScoredFamily& family = c.families[f];
     if (family.calibrated < kDecisive || !c.rejects_named(f)) continue;
@@ -240,7 +240,11 @@ bool Criticism::rejects_named(std::size_t family) const {
   return family < families.size() && below(best_of(families[family].calibrated, rates.best), kNamedAlarm);
 }
 bool Criticism::would_name(std::size_t family, double S) const {
-  return below(best_of(calibrated_at(S, families[family], noise.reference), rates.best), kNamedAlarm);
+  const ScoredFamily& f = families[family];
+  // What a walk or heavy tails made of the whole score they make of a part.
+  const double raised = std::max(0.0, f.calibrated - calibrated_at(f.winner().S, f, noise.reference));
+  const double part = std::min(0.0, calibrated_at(S, f, noise.reference) + raised);
+  return below(best_of(part, rates.best), kNamedAlarm);
 }
 bool Criticism::rejects_map() const {
   return !maps.empty() && below(best_of(maps.front().log10_p, static_cast<double>(maps.size())), kMapAlarm);
@@ -274,7 +278,12 @@ Criticism criticise_against_walk(const fit::joint::JointFit& fit,
 
 double chi2_at_stated_noise(const fit::joint::JointFit& fit, const Criticism& c, double table_sd_rad) {
   const double angles = table_sd_rad > 0 ? std::pow(fit.table_sd_rad / table_sd_rad, 2) : 1;
-  return (c.chi2 - fit.chi2_table) * fit.noise_inflation * fit.noise_inflation + fit.chi2_table * angles;
+  double attitudes = 0;  // with those that are left out, which JointFit::chi2_table does not have
+  for (std::size_t k = 0; k < fit.problem.poses.size(); ++k)
+    if (const fit::joint::JointPose& pose = fit.problem.poses[k]; pose.has_angles)
+      attitudes += (pose.attitude_weight * fit.state.nuisances[k].head<3>()).squaredNorm();
+  return (c.chi2 - attitudes) * fit.noise_inflation * fit.noise_inflation + (attitudes - fit.chi2_table) +
+         fit.chi2_table * angles;
 }
 
 void look_at_maps(Criticism& criticism) {

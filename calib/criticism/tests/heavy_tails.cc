@@ -8,14 +8,15 @@
 namespace mgtd::calib::criticism::tests {
 namespace {
 
-/// Readings that are left out are zero.
+/// Of a pose that is left out, rows are rounding.
 double excess_kurtosis_of(const Eigen::VectorXd& e, Eigen::Index poses, Eigen::Index rows) {
+  constexpr double kRounding = 1e-12;
   double sum = 0;
   for (Eigen::Index row = 0; row < rows; ++row) {
     double n = 0, squares = 0, fourths = 0;
     for (Eigen::Index k = 0; k < poses; ++k) {
       const double square = e[k * rows + row] * e[k * rows + row];
-      n += square > 0 ? 1 : 0, squares += square, fourths += square * square;
+      n += square > kRounding ? 1 : 0, squares += square, fourths += square * square;
     }
     if (squares > 0) sum += n * fourths / (squares * squares) - 3;
   }

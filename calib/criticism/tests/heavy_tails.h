@@ -9,7 +9,7 @@
 /// the effect is fitted to the others,
 ///     S = (1 - k/n) s' V^-1 s,  s = U'r,  V = sum over k of c_k c_k'
 /// of n poses and k columns: large noise in few poses makes V large as it does s (MacKinnon and White 1985,
-/// HC3; the factor is that of Hotelling's T^2).
+/// HC3; the factor is that of Hotelling's T^2). Whether that counts is for the caller to say.
 namespace mgtd::calib::criticism::tests {
 
 /// What the winning question of a family leaves has tails that normal noise does not have.

@@ -220,9 +220,9 @@ struct SensorInPoses {
   std::vector<std::size_t> poses;
 };
 
-/// The sensor that all blame lies on which was not there before; empty where it lies on more, or where the
-/// poses that are hit follow each other more than chance has it: that may be a step, or a source that comes
-/// and goes.
+/// The sensor that all blame lies on in poses of which nothing was left out before; empty where it lies on
+/// more, or where the poses that are hit follow each other more than chance has it: that may be a step, or a
+/// source that comes and goes.
 std::optional<SensorInPoses> sensor_to_blame(const Outliers& outliers, const std::vector<Rows>& before,
                                              int channels) {
   constexpr double kMost = 0.25;  // of the poses
@@ -231,14 +231,15 @@ std::optional<SensorInPoses> sensor_to_blame(const Outliers& outliers, const std
   Rows any;
   double alone = 0;
   for (std::size_t k = 0; k < before.size(); ++k) {
-    const Rows rows = outliers.rows()[k] & ~before[k];
-    if (rows.none()) continue;
+    const Rows& rows = outliers.rows()[k];
+    if (rows.none() || before[k].any()) continue;
     any |= rows;
     alone += out.poses.empty() || out.poses.back() + 1 < k ? 1 : 0;
     out.poses.push_back(k);
   }
   const auto hit = static_cast<double>(out.poses.size());
-  if (hit == 0 || outliers.share() > kMost || alone < kAlone * hit) return std::nullopt;
+  if (hit == 0 || hit > kMost * static_cast<double>(before.size()) || alone < kAlone * hit)
+    return std::nullopt;
   for (int i = 0; 3 * i < channels; ++i) {
     out.rows = rows_of_sensor(i);
     if ((any & ~out.rows).none()) return out;

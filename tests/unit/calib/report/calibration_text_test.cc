@@ -47,6 +47,11 @@ TEST(CalibrationText, ShowsParametersEffectsAndChecks) {
   EXPECT_THAT(text, HasSubstr("  FAIL  residual             2 nT (limit 1 nT)\n        -> look\n"));
 }
 
+TEST(CalibrationText, ATinyCoefficientIsNoRowOfZeros) {
+  EXPECT_EQ(with_sd(2.5e-14, 3e-15), "2.5e-14 ± 3e-15");
+  EXPECT_EQ(with_sd(2.5, 3e-4), "2.50000 ± 0.00030");
+}
+
 TEST(CalibrationText, AFormulaStandsOnceAboveItsCoefficients) {
   calibration::Calibration c = four_sensors();
   const std::string lift = "lift,level=gradient,expr=k1*t_h + k2*t_h^2";

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <stdexcept>
 
 #include "calib/criticism/tests/criticism.h"
 #include "tests/unit/calib/criticism/hidden.h"
