@@ -12,7 +12,7 @@
 /// HC3; the factor is that of Hotelling's T^2). Whether that counts is for the caller to say.
 namespace mgtd::calib::criticism::tests {
 
-/// What the winning question of a family leaves has tails that normal noise does not have.
+/// How heavy the tails are of what a question leaves, and what its score is beside the scatter of the poses.
 struct TailsBeside {
   double excess_kurtosis{0};  ///< mean over the rows of a pose; of normal noise zero
   double score_by_scatter{0};
